@@ -37,6 +37,8 @@ std::vector<OnlineSvr> make_learners(std::size_t inputs, const OnlineSvrSettings
 
 AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, std::size_t terms)
     : learners_(make_learners(inputs, settings, terms)),
+      change_(learners_.size(), TermChange(inputs, terms)),
+      model_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0),
       memory_(learners_.front().buffer(), settings),
       misfit_(kOnline.change.least_misfits, kOnline.change.misfit_every),
       sample_(inputs + terms),
@@ -48,6 +50,8 @@ std::size_t AdaptiveSvr::bytes(std::size_t inputs, const OnlineSvrSettings& sett
   const bool two = settings.adapt == AdaptRule::challenger;
   return sizeof(AdaptiveSvr) + (inputs + terms) * sizeof(double) + (two ? 2 * one : one) +
          PastModel::bytes(inputs, terms, two ? settings.places() : 0) +
+         (two ? 2 : 1) * (sizeof(TermChange) + (terms + 1) * sizeof(double)) +
+         SvrFunction::bytes(inputs, terms, two ? settings.places() : 0) +
          PastModels::bytes(inputs, terms, settings);
 }
 
@@ -62,9 +66,9 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
                              double committee_error) noexcept {
   const bool adaptive = learners_.size() > 1;
   const bool trying = detector_.trying();
-  const double error = adaptive ? error_without_short_range(champion(), z, y) : 0.0;
-  const double other = trying ? error_without_short_range(challenger(), z, y) : 0.0;
-  Decision decision = mutable_champion().update(z, y, t);
+  const double error = adaptive ? error_without_short_range(champion_, z, y) : 0.0;
+  const double other = trying ? error_without_short_range(1 - champion_, z, y) : 0.0;
+  Decision decision = mutable_champion().update(z, y - change()(z), t);
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
     if (task_ != SliceTask::recall) {
@@ -85,14 +89,35 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
       recall(decision);
     }
   }
+  add_change();
   tally_.add(decision);
   return decision;
+}
+
+void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
+  if (news.changed) {
+    detector_.dismiss();
+    memory_.promote_challenger(news.changed_since);
+  } else if (news.withdrawn) {
+    memory_.withdraw();
+  }
+  tally_.changes += news.changed ? 1 : 0;
+  tally_.withdrawn += news.withdrawn ? 1 : 0;
+  change_[champion_].add(step);
+  add_change();
+}
+
+void AdaptiveSvr::add_change() {
+  if (change().any()) {
+    model_.assign(champion().model());
+    model_.add(change().weights());
+  }
 }
 
 // Whether its error says something: it had a model, and hadn't been at this place.
 bool AdaptiveSvr::teach_challenger(std::span<const double> z, double y, double t) {
   challenger().limit(budget_.split_half());
-  const Decision step = challenger().update(z, y, t);
+  const Decision step = challenger().update(z, y - change_[1 - champion_](z), t);
   return step.had_model && step.similarity < kOnline.memory.same_place;
 }
 
@@ -119,7 +144,7 @@ void AdaptiveSvr::detect_change(Decision& decision, const ChangeDetector::Errors
                                 double t) {
   switch (detector_.inspect(errors, usual_misfit(), t)) {
     case Suspicion::raised:
-      challenger().clear();
+      clear_challenger();
       decision.suspected = true;
       break;
     case Suspicion::confirmed:
@@ -147,7 +172,7 @@ void AdaptiveSvr::manage_past_models(Decision& decision, double t) {
     decision.returning = true;
     decision.changed_since = since_s_;
   } else if (memory_.due() && !detector_.trying() && champion().ready() && !decision.unfinished) {
-    memory_.keep(champion(), t);
+    memory_.keep(champion(), model(), change(), t);
   }
 }
 
@@ -172,7 +197,12 @@ void AdaptiveSvr::promote(Decision& decision) {
 void AdaptiveSvr::start(SliceTask task) {
   task_ = task;
   detector_.dismiss();
+  clear_challenger();
+}
+
+void AdaptiveSvr::clear_challenger() {
   challenger().clear();
+  change_[1 - champion_].clear();
 }
 
 void AdaptiveSvr::recall(Decision& decision) {
@@ -249,8 +279,11 @@ RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
   if (next) {
     return RescaleStatus::under_way;
   }
+  change_[1 - champion_] = change();
+  change_[1 - champion_].rescale(map, sample_);
   Decision step;
   promote(step);
+  add_change();
   tally_.forgotten += step.forgotten;
   tally_.regained += step.regained;
   memory_.rescale(map);
@@ -268,7 +301,7 @@ RescaleStatus AdaptiveSvr::follow(const SampleMap& map) {
   const PastModel& past = memory_.models()[past_];
   if (challenger().relearn_slice(past, past.info.until_s, map)) {
     memory_.rescale_model(past_++, map, challenger().model());
-    challenger().clear();
+    clear_challenger();
   }
   return RescaleStatus::under_way;
 }
@@ -289,6 +322,7 @@ void AdaptiveSvr::visit(Archive& archive) {
   archive.part("change", detector_);
   archive.require(!detector_.trying() || learners_.size() > 1, "has a challenger without a place");
   archive.part("champion", mutable_champion());
+  std::ranges::for_each(change_, [&](TermChange& change) { archive.part("since", change); });
   visit_task(archive);
   if (learners_.size() > 1 && (detector_.trying() || task_ != SliceTask::none)) {
     archive.part("challenger", challenger());
@@ -300,6 +334,7 @@ void AdaptiveSvr::visit(Archive& archive) {
                                                           : past_ < memory_.models().size();
   archive.require(of_a_past_model || (task_ != SliceTask::follow && task_ != SliceTask::recall),
                   "learns a past model that there isn't");
+  add_change();
 }
 
 void AdaptiveSvr::visit_task(Archive& archive) {
@@ -318,7 +353,7 @@ void AdaptiveSvr::visit_task(Archive& archive) {
 }
 
 double AdaptiveSvr::predict(std::span<const double> z) const noexcept {
-  return champion().predict(z);
+  return champion().predict(z) + change()(z);
 }
 
 Status AdaptiveSvr::status() const {
@@ -328,10 +363,11 @@ Status AdaptiveSvr::status() const {
 }
 
 // The error beyond the moment: what the fine part follows, that of a challenger follows as well.
-double AdaptiveSvr::error_without_short_range(const OnlineSvr& learner, std::span<const double> z,
-                                              double y) {
-  const bool known = learner.ready() && z.size() == learner.model().kernel().dimension();
-  return known ? std::abs(y - learner.model().without_short_range(z)) : 0.0;
+double AdaptiveSvr::error_without_short_range(std::size_t learner, std::span<const double> z,
+                                              double y) const {
+  const OnlineSvr& svr = learners_[learner];
+  const bool known = svr.ready() && z.size() == svr.model().kernel().dimension();
+  return known ? std::abs(y - change_[learner](z) - svr.model().without_short_range(z)) : 0.0;
 }
 
 }  // namespace kelpie

@@ -12,6 +12,7 @@
 #include "learner/past_models.hpp"
 #include "learner/robust_scale.hpp"
 #include "learner/sample_collector.hpp"
+#include "learner/term_change.hpp"
 #include "svr/budget.hpp"
 #include "svr/svr_function.hpp"
 
@@ -27,6 +28,10 @@ namespace kelpie {
 /// The challenger's place also serves for long tasks, a slice with every update: the change to
 /// another scale and the recall of a past model. The champion stays in service meanwhile. During a
 /// task no challenger is tried, no past model is recalled, and no other task begins.
+///
+/// A change of the vehicle may be known as a step of the terms' weights (shift()). The samples then
+/// stay as they are: the champion learns later targets less the change since its samples
+/// (TermChange), and model() adds the change. Past models are of the vehicle itself.
 ///
 /// Real time: as OnlineSvr. With a challenger an update costs about twice as much. Champion,
 /// challenger and task have the budget's steps each; they share clock and work.
@@ -64,6 +69,11 @@ class AdaptiveSvr final : public OnlineRegressor {
   double predict(std::span<const double> z) const noexcept override;
   Status status() const override;
 
+  /// Follows a change of the vehicle by a known step of the terms' weights; the last number is of
+  /// the bias. `news`: `changed` with `changed_since` at the first step, `withdrawn` at the last.
+  /// Requires `adapt = challenger`. Cost O(n inputs). Allocates nothing.
+  void shift(std::span<const double> step, const Decision& news);
+
   /// KernelDensity::novelty() of a sample's inputs in the champion's buffer. Cost: two kernel rows.
   double novelty(std::span<const double> z) const {
     return kelpie::novelty(champion().buffer(), z);
@@ -100,7 +110,14 @@ class AdaptiveSvr final : public OnlineRegressor {
 
   const OnlineSvr& champion() const { return learners_[champion_]; }
   const OnlineSvrSettings& settings() const { return champion().settings(); }
-  const SvrFunction& model() const { return champion().model(); }
+
+  /// The function of the vehicle as known now.
+  const SvrFunction& model() const {
+    return change_[champion_].any() ? model_ : champion().model();
+  }
+
+  /// Change of the vehicle since the champion's samples.
+  const TermChange& change() const { return change_[champion_]; }
 
   /// Memory of a learner in bytes, known before construction. Requires settings that validate.
   static std::size_t bytes(std::size_t inputs, const OnlineSvrSettings& settings,
@@ -109,8 +126,9 @@ class AdaptiveSvr final : public OnlineRegressor {
  private:
   OnlineSvr& mutable_champion() { return learners_[champion_]; }
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
-  static double error_without_short_range(const OnlineSvr& learner, std::span<const double> z,
-                                          double y);
+  double error_without_short_range(std::size_t learner, std::span<const double> z, double y) const;
+  void clear_challenger();
+  void add_change();
   bool teach_challenger(std::span<const double> z, double y, double t);
   void measure_misfit();
   double usual_misfit() const;
@@ -126,7 +144,9 @@ class AdaptiveSvr final : public OnlineRegressor {
   void visit_task(Archive& archive);
 
   std::vector<OnlineSvr> learners_;  ///< one, or two with adapt = challenger
+  std::vector<TermChange> change_;   ///< of each learner
   std::size_t champion_ = 0;
+  SvrFunction model_;  ///< the champion's, with the change; without a change of no use
   ChangeDetector detector_;
   PastModels memory_;
   RobustScale misfit_;          ///< residuals in the champion's own buffer, without short range

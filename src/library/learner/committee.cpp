@@ -156,7 +156,10 @@ void Committee::reset_for_new_vehicle() {
 void Committee::relearn_buffer(int rounds) {
   seen_.clear();
   const SampleCollector& buffer = learner_.champion().buffer();
-  std::ranges::for_each(buffer.problem().targets(), [&](double y) { seen_.add(y); });
+  for (std::size_t i = 0; i < buffer.size(); ++i) {
+    buffer.samples().get(i, sample_);
+    seen_.add(buffer.problem().targets()[i] + learner_.change()(sample_));
+  }
   to_learn_.begin(buffer, rounds);
   relearn_slice();
 }
@@ -169,7 +172,7 @@ void Committee::relearn_slice() {
        ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       buffer.samples().get(*i, sample_);
-      learn_in_fits(sample_, buffer.problem().targets()[*i], false);
+      learn_in_fits(sample_, buffer.problem().targets()[*i] + learner_.change()(sample_), false);
     }
   }
   std::ranges::for_each(fits_->all(), &SparseRegression::publish);
@@ -312,18 +315,11 @@ void Committee::shift(std::span<const double> step, const Decision& news) {
       fit->doubt_terms(kOnline.members.kept);
     }
   }
+  learner_.shift(step, news);
   if (news.changed || news.withdrawn) {
-    news_.changes += news.changed ? 1 : 0;
-    news_.withdrawn += news.withdrawn ? 1 : 0;
     shares_.halve_evidence();
   }
   freeze_copies();
-}
-
-Status Committee::status() const {
-  Status status = learner_.status();
-  status.tally.add(news_);
-  return status;
 }
 
 LearnerState Committee::state() const {
@@ -358,7 +354,6 @@ void Committee::visit(Archive& archive) {
   archive.part("to learn", to_learn_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
-  archive.part("news", news_);
 }
 
 }  // namespace kelpie

@@ -60,7 +60,7 @@ class Committee final : public OnlineRegressor {
   Decision update(std::span<const double> z, double y, double t) override;
   void alert(double since_s, bool another) override { learner_.alert(since_s, another); }
   double predict(std::span<const double> z) const override;
-  Status status() const override;
+  Status status() const override { return learner_.status(); }
   std::vector<MemberShare> members() const override;
 
   /// predict(), equal to rounding, and its gradient by z and φ. Requirements of
@@ -89,9 +89,9 @@ class Committee final : public OnlineRegressor {
   /// committee without samples, and functions of as many inputs and terms. Allocates.
   void resume_from(const FunctionMix& said, const PastModel::Completion& complete, double t);
 
-  /// Follows a change of the vehicle that is known as a step of the terms' weights, the last number
-  /// of the bias: the members with terms take the step, and know the vehicle less well; the learner
-  /// is left to the shares. `news`: the fields `changed` and `withdrawn` count. Allocates nothing.
+  /// Follows a change of the vehicle by a known step of the terms' weights; the last number is of
+  /// the bias. All members but `mean` take the step; those with terms know the vehicle less well
+  /// from a new change on (`news`, as AdaptiveSvr::shift()). Allocates nothing.
   void shift(std::span<const double> step, const Decision& news);
 
   const AdaptiveSvr& learner() const { return learner_; }
@@ -147,7 +147,6 @@ class Committee final : public OnlineRegressor {
   Relearning to_learn_;         ///< the buffer's samples that the fits have still to relearn
   std::vector<double> sample_;  ///< scratch
   Budget budget_;               ///< of every update
-  Tally news_;                  ///< of shift()
 };
 
 }  // namespace kelpie

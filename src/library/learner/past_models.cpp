@@ -149,8 +149,9 @@ std::optional<std::size_t> PastModels::fitting() const {
   return state_ == State::on_trial ? trial_.fitting(kept_as_) : std::nullopt;
 }
 
-void PastModels::keep(const OnlineSvr& service, double t) {
-  std::optional<std::size_t> same = agreeing(service.model());
+void PastModels::keep(const OnlineSvr& service, const SvrFunction& function,
+                      const TermChange& change, double t) {
+  std::optional<std::size_t> same = agreeing(function);
   if (same && age_ < kOnline.memory.same_after) {
     models_[*same].info.until_s = t;  // perhaps on its way to another: the picture stays
     if (!kept_as_) {
@@ -174,7 +175,11 @@ void PastModels::keep(const OnlineSvr& service, double t) {
   // An error within half the tube is none.
   info.usual_error =
       std::max({mean_error_, 0.5 * service.settings().epsilon, kOnline.memory.least_error});
-  model.keep(service.buffer(), service.model(), info);
+  model.keep(service.buffer(), function, info);
+  for (std::size_t i = 0; change.any() && i < model.size(); ++i) {
+    model.samples.get(i, sample_);
+    model.targets[i] += change(sample_);
+  }
   since_kept_ = 0;
 }
 

@@ -12,6 +12,7 @@
 #include "learner/error_alarm.hpp"
 #include "learner/model_trial.hpp"
 #include "learner/past_model.hpp"
+#include "learner/term_change.hpp"
 #include "learner/tuning.hpp"
 
 namespace kelpie {
@@ -61,7 +62,10 @@ class PastModels {
     return state_ == State::watching && age_ >= kOnline.memory.settled &&
            age_ % kOnline.memory.keep_every == 0;
   }
-  void keep(const OnlineSvr& service, double t);  ///< Copies the model. Cost O(n d).
+  /// Copies the model in service, with the change since its samples; `function`: with this
+  /// change. Cost O(n d).
+  void keep(const OnlineSvr& service, const SvrFunction& function,
+            const TermChange& change, double t);
 
   /// The past model that fits, the latest sample included; on trial only.
   std::optional<std::size_t> fitting() const;

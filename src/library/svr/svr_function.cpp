@@ -2,6 +2,7 @@
 #include "svr/svr_function.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "core/vector.hpp"
 
@@ -38,6 +39,12 @@ void SvrFunction::assign(const SvrFunction& other) {
   std::ranges::copy(other.beta(), beta_.begin());
   std::ranges::copy(other.term_weights_, term_weights_.begin());
   bias_ = other.bias_;
+}
+
+void SvrFunction::add(std::span<const double> weights) {
+  std::ranges::transform(term_weights_, weights.first(term_weights_.size()), term_weights_.begin(),
+                         std::plus{});
+  bias_ += weights.back();
 }
 
 void SvrFunction::clear() {

@@ -34,6 +34,9 @@ class SvrFunction {
   /// O(n inputs). Allocates nothing.
   void assign(const SvrFunction& other);
 
+  /// Adds a linear function of the terms: a weight per term, and the last number to the bias.
+  void add(std::span<const double> weights);
+
   void clear();  ///< f(x) = 0
 
   /// Requires x of the kernel's dimension. Cost O(n inputs + terms). Allocates nothing; safe from

@@ -89,7 +89,7 @@ TEST(PastModels, NothingIsRecalledThatHasNotLeft) {
       service.update(sample.z, sample.y, time += 0.25);
       memory.observe(sample.z, sample.y, error, time);
       if (memory.due()) {
-        memory.keep(service, time);
+        memory.keep(service, service.model(), TermChange(2, 0), time);
       }
       EXPECT_FALSE(memory.fitting());
     }
