@@ -53,7 +53,8 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       weighted_y_(axes()),
       error_(axes()),
       effect_(causes()),
-      gain_(causes()) {
+      gain_(causes()),
+      mixed_(causes()) {
   for (std::size_t k = 0; k < term_commands_.size(); ++k) {
     const std::span<const std::size_t> inputs = terms.term(k).columns();
     for (std::size_t c = 0; c < commands.size(); ++c) {
@@ -70,6 +71,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
     start.theta.resize(told_.size());
     start.size.resize(causes());
     start.covariance.resize(causes() * causes());
+    start.lone.resize(causes() + 2);
     start.scatter.resize(axes());
     start.tau.resize(axes());
   }
@@ -180,6 +182,7 @@ void ChangeMonitor::begin_start(double t) {
   for (std::size_t c = 0; c < causes(); ++c) {
     free->covariance[c * (causes() + 1)] = kChange.deviation * kChange.deviation;
   }
+  std::ranges::fill(free->lone, Lone{.variance = kChange.deviation * kChange.deviation});
   for (std::size_t a = 0; a < axes(); ++a) {
     free->scatter[a] = scatter_[a].value();
     free->tau[a] = correlation_[a].rows_per_sample();
@@ -220,6 +223,30 @@ void ChangeMonitor::effects(const Start& start, std::size_t axis) {
   effect_[commands_ + axes() + axis] = value_;
 }
 
+// The change of an axis' value per unit of a lone size.
+double ChangeMonitor::lone_effect(std::size_t lone, std::size_t axis) const {
+  return lone < causes() ? effect_[lone] : effect_[commands_ + (lone - causes()) * axes() + axis];
+}
+
+// As observe() with one size alone; `error`: of the vehicle before.
+void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error, double without) {
+  const double noise = start.scatter[axis] * start.scatter[axis] * (1.0 + leverage_);
+  const double ignored = log_density(without, noise);
+  for (std::size_t k = 0; k < start.lone.size(); ++k) {
+    Lone& lone = start.lone[k];
+    const double effect = lone_effect(k, axis);
+    const double left = error - effect * lone.size;
+    const double variance = noise + effect * effect * lone.variance;
+    const double gained = log_density(left, variance) - ignored;
+    lone.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[axis];
+    const double weight = robust_weight(left, variance) / start.tau[axis];
+    const double gain =
+        lone.variance * effect / (noise / weight + effect * effect * lone.variance);
+    lone.size += gain * left;
+    lone.variance *= 1.0 - gain * effect;
+  }
+}
+
 // The evidence of one row, then a Kalman update of the sizes. The start is compared with the fit,
 // or with the vehicle before the change.
 void ChangeMonitor::observe(Start& start, std::span<const double> y, bool against_fit) {
@@ -234,6 +261,7 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
     const double unknown = effect.dot(gain);
     const double without = against_fit ? error_[a] : y[a] - value_;
     const double error = y[a] - value_ - effect.dot(size);
+    observe_lone(start, a, y[a] - value_, without);
     const double gained = log_density(error, noise + unknown) - log_density(without, noise);
     start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
     const double weight = robust_weight(error, noise + unknown) / start.tau[a];
@@ -279,18 +307,39 @@ ChangeMonitor::Event ChangeMonitor::believe(Start& start, double t) {
   return Event::changed;
 }
 
+// The sizes of all hypotheses of a start, weighted by their evidence.
+void ChangeMonitor::mix_sizes(const Start& start) {
+  const double most = std::max(
+      start.evidence, std::ranges::max_element(start.lone, {}, &Lone::evidence)->evidence);
+  double sum = std::exp(start.evidence - most);
+  as_vector(mixed_) = sum * as_vector(std::span<const double>(start.size));
+  for (std::size_t k = 0; k < start.lone.size(); ++k) {
+    const double weight = std::exp(start.lone[k].evidence - most);
+    const bool one = k < causes();
+    const std::size_t first = one ? k : commands_ + (k - causes()) * axes();
+    for (std::size_t c = first; c < first + (one ? 1 : axes()); ++c) {
+      mixed_[c] += weight * start.lone[k].size;
+    }
+    sum += weight;
+  }
+  as_vector(mixed_) /= sum;
+}
+
 // step_ leads from the coefficients in service to those of the start; null: of before the change.
 void ChangeMonitor::move_to(const Start* start) {
+  if (start != nullptr) {
+    mix_sizes(*start);
+  }
   for (std::size_t a = 0; a < axes(); ++a) {
     for (std::size_t k = 0; k < columns(); ++k) {
       double share = 0.0;
       if (start != nullptr) {
-        share = start->size[commands_ + axes() + a];
+        share = mixed_[commands_ + axes() + a];
         if (k + 1 < columns()) {
           for (const std::size_t command : term_commands_[k]) {
-            share += start->size[command];
+            share += mixed_[command];
           }
-          share += term_drag_[k] == a ? start->size[commands_ + a] : 0.0;
+          share += term_drag_[k] == a ? mixed_[commands_ + a] : 0.0;
         }
       }
       const std::size_t place = a * columns() + k;
@@ -355,6 +404,11 @@ void ChangeMonitor::Start::visit(Archive& archive) {
   }
   for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
     archive.numbers(*values);
+  }
+  for (Lone& one : lone) {
+    for (double* const number : {&one.size, &one.variance, &one.evidence}) {
+      archive.number(*number);
+    }
   }
 }
 

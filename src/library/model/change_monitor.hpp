@@ -24,7 +24,10 @@ namespace kelpie {
 ///     Θ = Θ₀ + Σ_c s_c D_c(Θ₀),    s_c ~ N(0, 0.5²) at first,
 ///
 /// with a cause c per command (all its terms on all axes), per axis for drag (v and v|v|), and per
-/// axis for inertia (all terms). Rows update the sizes s_c (Kalman 1960). The evidence of a start
+/// axis for inertia (all terms). Rows update the sizes s_c (Kalman 1960). Most changes have one
+/// cause: beside all sizes together, each cause alone is estimated, and so are drag and inertia of
+/// all axes; the sizes of a change are the mean of these hypotheses, weighted by their evidence
+/// (Bayesian model averaging: Hoeting, Madigan, Raftery & Volinsky 1999). The evidence of a start
 /// is the logarithm of its Bayes factor against the fit (Kass & Raftery 1995), from predictions
 /// made before a row is learned, summed over rows and axes. τ rows count as one independent sample
 /// (ErrorCorrelation), and no sample counts more than 1.5 nats. A change is believed where the
@@ -72,6 +75,13 @@ class ChangeMonitor {
  private:
   static constexpr std::size_t kMostStarts = 16;
 
+  /// The size of a cause, or of several alike, without any other.
+  struct Lone {
+    double size = 0.0;
+    double variance = 0.0;
+    double evidence = 0.0;  ///< [nats]
+  };
+
   /// The hypothesis of a change at one moment.
   struct Start {
     bool alive = false;
@@ -82,6 +92,7 @@ class ChangeMonitor {
     std::vector<double> theta;       ///< Θ₀, axis after axis
     std::vector<double> size;        ///< mean of s
     std::vector<double> covariance;  ///< of s
+    std::vector<Lone> lone;          ///< each cause, then drag of all axes, then inertia of all
     std::vector<double> scatter;     ///< usual error of each axis
     std::vector<double> tau;         ///< rows per independent sample of each axis
     void visit(Archive& archive);
@@ -98,7 +109,10 @@ class ChangeMonitor {
   void begin_start(double t);
   void end_old_starts(double t);
   void effects(const Start& start, std::size_t axis);
+  double lone_effect(std::size_t lone, std::size_t axis) const;
   void observe(Start& start, std::span<const double> y, bool against_fit);
+  void observe_lone(Start& start, std::size_t axis, double error, double without);
+  void mix_sizes(const Start& start);
   const Start* most_evident() const;
   Start& youngest_with(double evidence);
   Event believe(Start& start, double t);
@@ -127,7 +141,7 @@ class ChangeMonitor {
   std::vector<double> told_, step_;  ///< change of the coefficients in service; last step
   std::vector<double> all_phi_, phi_, weighted_y_, error_;  ///< of the row
   double leverage_ = 0.0;                                   ///< φᵀPφ of the row
-  std::vector<double> effect_, gain_;                       ///< scratch: y per unit of each size
+  std::vector<double> effect_, gain_, mixed_;               ///< scratch: per cause
   double value_ = 0.0;                                      ///< scratch: Θ₀ᵀφ
 };
 
