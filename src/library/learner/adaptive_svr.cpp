@@ -95,11 +95,13 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 }
 
 void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
+  detector_.dismiss();  // errors until now are of the vehicle before
   if (news.changed) {
-    detector_.dismiss();
     memory_.promote_challenger(news.changed_since);
   } else if (news.withdrawn) {
     memory_.withdraw();
+  } else {
+    memory_.settle();
   }
   tally_.changes += news.changed ? 1 : 0;
   tally_.withdrawn += news.withdrawn ? 1 : 0;

@@ -77,6 +77,8 @@ class PastModels {
   void recall(std::size_t model, double since_s);
   /// Reports a challenger in service, with the start of its vehicle [s].
   void promote_challenger(double since_s);
+  /// Reports a step of the model in service: nothing is known of its errors.
+  void settle() { enter(State::settling); }
   /// Reports the withdrawal of the last change: the former model is in service again.
   void withdraw();
 

@@ -27,6 +27,15 @@ double robust_weight(double error, double variance) {
   return error * error > far ? far / (error * error) : 1.0;
 }
 
+// With tails of Huber's (1964) loss.
+double robust_log_density(double error, double variance) {
+  const double deviations = std::abs(error) / std::sqrt(variance);
+  const double square = deviations <= kChange.huber
+                            ? deviations * deviations
+                            : kChange.huber * (2.0 * deviations - kChange.huber);
+  return -0.5 * (square + std::log(variance));
+}
+
 double log_density(double error, double variance) {
   return -0.5 * (error * error / variance + std::log(variance));
 }
@@ -176,6 +185,7 @@ void ChangeMonitor::begin_start(double t) {
   free->life_s = kChange.life_s * static_cast<double>(1 << doublings);
   free->evidence = 0.0;
   free->peak = 0.0;
+  free->likelihood = 0.0;
   std::ranges::copy(fit_.theta(), free->theta.begin());
   std::ranges::fill(free->size, 0.0);
   std::ranges::fill(free->covariance, 0.0);
@@ -229,16 +239,14 @@ double ChangeMonitor::lone_effect(std::size_t lone, std::size_t axis) const {
 }
 
 // As observe() with one size alone; `error`: of the vehicle before.
-void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error, double without) {
+void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error) {
   const double noise = start.scatter[axis] * start.scatter[axis] * (1.0 + leverage_);
-  const double ignored = log_density(without, noise);
   for (std::size_t k = 0; k < start.lone.size(); ++k) {
     Lone& lone = start.lone[k];
     const double effect = lone_effect(k, axis);
     const double left = error - effect * lone.size;
     const double variance = noise + effect * effect * lone.variance;
-    const double gained = log_density(left, variance) - ignored;
-    lone.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[axis];
+    lone.likelihood += robust_log_density(left, variance) / start.tau[axis];
     const double weight = robust_weight(left, variance) / start.tau[axis];
     const double gain =
         lone.variance * effect / (noise / weight + effect * effect * lone.variance);
@@ -261,7 +269,8 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
     const double unknown = effect.dot(gain);
     const double without = against_fit ? error_[a] : y[a] - value_;
     const double error = y[a] - value_ - effect.dot(size);
-    observe_lone(start, a, y[a] - value_, without);
+    observe_lone(start, a, y[a] - value_);
+    start.likelihood += robust_log_density(error, noise + unknown) / start.tau[a];
     const double gained = log_density(error, noise + unknown) - log_density(without, noise);
     start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
     const double weight = robust_weight(error, noise + unknown) / start.tau[a];
@@ -307,14 +316,14 @@ ChangeMonitor::Event ChangeMonitor::believe(Start& start, double t) {
   return Event::changed;
 }
 
-// The sizes of all hypotheses of a start, weighted by their evidence.
+// The sizes of all hypotheses of a start, weighted by their likelihood.
 void ChangeMonitor::mix_sizes(const Start& start) {
   const double most = std::max(
-      start.evidence, std::ranges::max_element(start.lone, {}, &Lone::evidence)->evidence);
-  double sum = std::exp(start.evidence - most);
+      start.likelihood, std::ranges::max_element(start.lone, {}, &Lone::likelihood)->likelihood);
+  double sum = std::exp(start.likelihood - most);
   as_vector(mixed_) = sum * as_vector(std::span<const double>(start.size));
   for (std::size_t k = 0; k < start.lone.size(); ++k) {
-    const double weight = std::exp(start.lone[k].evidence - most);
+    const double weight = std::exp(start.lone[k].likelihood - most);
     const bool one = k < causes();
     const std::size_t first = one ? k : commands_ + (k - causes()) * axes();
     for (std::size_t c = first; c < first + (one ? 1 : axes()); ++c) {
@@ -399,14 +408,14 @@ void ChangeMonitor::Start::visit(Archive& archive) {
   if (!alive) {
     return;
   }
-  for (double* const number : {&begun_s, &life_s, &evidence, &peak}) {
+  for (double* const number : {&begun_s, &life_s, &evidence, &peak, &likelihood}) {
     archive.number(*number);
   }
   for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
     archive.numbers(*values);
   }
   for (Lone& one : lone) {
-    for (double* const number : {&one.size, &one.variance, &one.evidence}) {
+    for (double* const number : {&one.size, &one.variance, &one.likelihood}) {
       archive.number(*number);
     }
   }

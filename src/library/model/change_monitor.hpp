@@ -26,7 +26,7 @@ namespace kelpie {
 /// with a cause c per command (all its terms on all axes), per axis for drag (v and v|v|), and per
 /// axis for inertia (all terms). Rows update the sizes s_c (Kalman 1960). Most changes have one
 /// cause: beside all sizes together, each cause alone is estimated, and so are drag and inertia of
-/// all axes; the sizes of a change are the mean of these hypotheses, weighted by their evidence
+/// all axes; the sizes of a change are the mean of these hypotheses, weighted by their likelihood
 /// (Bayesian model averaging: Hoeting, Madigan, Raftery & Volinsky 1999). The evidence of a start
 /// is the logarithm of its Bayes factor against the fit (Kass & Raftery 1995), from predictions
 /// made before a row is learned, summed over rows and axes. τ rows count as one independent sample
@@ -79,7 +79,7 @@ class ChangeMonitor {
   struct Lone {
     double size = 0.0;
     double variance = 0.0;
-    double evidence = 0.0;  ///< [nats]
+    double likelihood = 0.0;  ///< [nats]
   };
 
   /// The hypothesis of a change at one moment.
@@ -89,6 +89,7 @@ class ChangeMonitor {
     double life_s = 0.0;
     double evidence = 0.0;           ///< [nats]
     double peak = 0.0;               ///< largest evidence so far [nats]
+    double likelihood = 0.0;         ///< of all sizes together [nats]
     std::vector<double> theta;       ///< Θ₀, axis after axis
     std::vector<double> size;        ///< mean of s
     std::vector<double> covariance;  ///< of s
@@ -111,7 +112,7 @@ class ChangeMonitor {
   void effects(const Start& start, std::size_t axis);
   double lone_effect(std::size_t lone, std::size_t axis) const;
   void observe(Start& start, std::span<const double> y, bool against_fit);
-  void observe_lone(Start& start, std::size_t axis, double error, double without);
+  void observe_lone(Start& start, std::size_t axis, double error);
   void mix_sizes(const Start& start);
   const Start* most_evident() const;
   Start& youngest_with(double evidence);
