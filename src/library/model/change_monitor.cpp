@@ -42,6 +42,9 @@ double log_density(double error, double variance) {
 
 }  // namespace
 
+const ChangeMonitor::Lone ChangeMonitor::kUnknown{
+    .variance = kChange.deviation * kChange.deviation};
+
 ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> states,
                              std::span<const std::size_t> commands)
     : terms_(terms),
@@ -192,7 +195,7 @@ void ChangeMonitor::begin_start(double t) {
   for (std::size_t c = 0; c < causes(); ++c) {
     free->covariance[c * (causes() + 1)] = kChange.deviation * kChange.deviation;
   }
-  std::ranges::fill(free->lone, Lone{.variance = kChange.deviation * kChange.deviation});
+  std::ranges::fill(free->lone, kUnknown);
   for (std::size_t a = 0; a < axes(); ++a) {
     free->scatter[a] = scatter_[a].value();
     free->tau[a] = correlation_[a].rows_per_sample();
@@ -238,20 +241,25 @@ double ChangeMonitor::lone_effect(std::size_t lone, std::size_t axis) const {
   return lone < causes() ? effect_[lone] : effect_[commands_ + (lone - causes()) * axes() + axis];
 }
 
-// As observe() with one size alone; `error`: of the vehicle before.
-void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error) {
+// As observe() with one size alone; `error`: of the vehicle before, `without`: of the fit. A size
+// that explains less than no change begins anew (CUSUM: Page 1954), and so at the change.
+void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error, double without) {
   const double noise = start.scatter[axis] * start.scatter[axis] * (1.0 + leverage_);
+  const double ignored = robust_log_density(without, noise);
   for (std::size_t k = 0; k < start.lone.size(); ++k) {
     Lone& lone = start.lone[k];
     const double effect = lone_effect(k, axis);
     const double left = error - effect * lone.size;
     const double variance = noise + effect * effect * lone.variance;
-    lone.likelihood += robust_log_density(left, variance) / start.tau[axis];
+    lone.likelihood += (robust_log_density(left, variance) - ignored) / start.tau[axis];
     const double weight = robust_weight(left, variance) / start.tau[axis];
     const double gain =
         lone.variance * effect / (noise / weight + effect * effect * lone.variance);
     lone.size += gain * left;
     lone.variance *= 1.0 - gain * effect;
+    if (lone.likelihood <= 0.0) {
+      lone = kUnknown;
+    }
   }
 }
 
@@ -269,8 +277,10 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
     const double unknown = effect.dot(gain);
     const double without = against_fit ? error_[a] : y[a] - value_;
     const double error = y[a] - value_ - effect.dot(size);
-    observe_lone(start, a, y[a] - value_);
-    start.likelihood += robust_log_density(error, noise + unknown) / start.tau[a];
+    observe_lone(start, a, y[a] - value_, without);
+    start.likelihood +=
+        (robust_log_density(error, noise + unknown) - robust_log_density(without, noise)) /
+        start.tau[a];
     const double gained = log_density(error, noise + unknown) - log_density(without, noise);
     start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
     const double weight = robust_weight(error, noise + unknown) / start.tau[a];

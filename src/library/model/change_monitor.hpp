@@ -79,8 +79,9 @@ class ChangeMonitor {
   struct Lone {
     double size = 0.0;
     double variance = 0.0;
-    double likelihood = 0.0;  ///< [nats]
+    double likelihood = 0.0;  ///< over no change [nats]
   };
+  static const Lone kUnknown;
 
   /// The hypothesis of a change at one moment.
   struct Start {
@@ -89,7 +90,7 @@ class ChangeMonitor {
     double life_s = 0.0;
     double evidence = 0.0;           ///< [nats]
     double peak = 0.0;               ///< largest evidence so far [nats]
-    double likelihood = 0.0;         ///< of all sizes together [nats]
+    double likelihood = 0.0;         ///< of all sizes together, over no change [nats]
     std::vector<double> theta;       ///< Θ₀, axis after axis
     std::vector<double> size;        ///< mean of s
     std::vector<double> covariance;  ///< of s
@@ -112,7 +113,7 @@ class ChangeMonitor {
   void effects(const Start& start, std::size_t axis);
   double lone_effect(std::size_t lone, std::size_t axis) const;
   void observe(Start& start, std::span<const double> y, bool against_fit);
-  void observe_lone(Start& start, std::size_t axis, double error);
+  void observe_lone(Start& start, std::size_t axis, double error, double without);
   void mix_sizes(const Start& start);
   const Start* most_evident() const;
   Start& youngest_with(double evidence);
