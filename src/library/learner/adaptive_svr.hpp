@@ -109,7 +109,6 @@ class AdaptiveSvr final : public OnlineRegressor {
   SliceTask task() const { return task_; }
 
   const OnlineSvr& champion() const { return learners_[champion_]; }
-  const OnlineSvrSettings& settings() const { return champion().settings(); }
 
   /// The function of the vehicle as known now.
   const SvrFunction& model() const {
@@ -124,6 +123,7 @@ class AdaptiveSvr final : public OnlineRegressor {
                            std::size_t terms = 0);
 
  private:
+  const OnlineSvrSettings& settings() const { return champion().settings(); }
   OnlineSvr& mutable_champion() { return learners_[champion_]; }
   OnlineSvr& challenger() { return learners_[1 - champion_]; }
   double error_without_short_range(std::size_t learner, std::span<const double> z, double y) const;

@@ -73,7 +73,7 @@ struct OnlineTuning {
     std::int64_t ignored_first = 5;  ///< errors of the first samples, uninformative: by hand
     std::size_t error_least = 30;    ///< errors before the usual error is known: by hand
     std::size_t error_every = 16;    ///< errors between two medians: by hand
-    double kept = 100.0;             ///< independent samples behind the terms' weights, at a change
+    double kept = 300.0;             ///< independent samples behind the terms' weights, at a change
   } members;
 
   /// ErrorCorrelation.

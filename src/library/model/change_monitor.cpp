@@ -111,7 +111,7 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
     }
   }
   const Start* const likely = most_evident();
-  if (likely != nullptr && known() && likely->evidence > threshold()) {
+  if (likely != nullptr && likely->evidence > threshold()) {
     return believe(youngest_with(kChange.alike * likely->evidence), t);
   }
   learn(y);
@@ -171,10 +171,11 @@ void ChangeMonitor::learn(std::span<const double> y) {
 }
 
 // Every second start lives twice as long as the others, every fourth four times, and so on: starts
-// of all ages up to ten minutes, the young ones close together.
+// of all ages up to ten minutes, the young ones close together. A start with the coefficients of a
+// vehicle that is not known yet would take what is learned of the vehicle for a change.
 void ChangeMonitor::begin_start(double t) {
   const auto free = std::ranges::find(starts_, false, &Start::alive);
-  if (t - begun_s_ < kChange.start_every_s || free == starts_.end() ||
+  if (t - begun_s_ < kChange.start_every_s || free == starts_.end() || !known() ||
       !std::ranges::all_of(scatter_, [](const RobustScale& scatter) {
         return std::isfinite(scatter.value()) && scatter.value() > 0.0;
       })) {

@@ -122,7 +122,7 @@ inline constexpr struct ModelTuning {
     double settle_s = 60.0;          ///< s in which coefficients follow a change; by hand
     double move_every_s = 1.0;       ///< s between two steps; by hand
     double probation_s = 120.0;      ///< s in which a change may be withdrawn; by hand
-    double kept = 100.0;             ///< independent samples of before a change; as the members'
+    double kept = 300.0;             ///< independent samples of before a change; as the members'
   } change;
 
   /// Practice of rollouts (model/open_loop_practice.hpp).

@@ -108,7 +108,7 @@ TEST(ChangeMonitor, TellsByHowMuchTheCoefficientsHaveChanged) {
       const double lost =
           std::inner_product(phi.begin(), phi.end(), story.moved[axis].begin(), 0.0);
       const double truth = (axis == 0 ? -0.005 : -0.01) * n1 * std::abs(n1);
-      EXPECT_NEAR(lost, truth, 0.2 * std::abs(truth)) << n1 << " " << axis;
+      EXPECT_NEAR(lost, truth, 0.05 * std::abs(truth)) << n1 << " " << axis;
     }
   }
 }

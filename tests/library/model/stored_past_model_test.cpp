@@ -111,7 +111,7 @@ TEST(StoredPastModel, WhereThereIsLessRoomTheLatestSamplesStay) {
   trial.drive(1.0, 1500);
   const StoredPastModel model = trial.model().past_models(0).front();
   const DynamicsAxis& axis = trial.model().mechanisms(0);
-  OnlineSvrSettings small = axis.svr().settings();
+  OnlineSvrSettings small = axis.svr().champion().settings();
   small.buffer = 20;
   ASSERT_NE(axis.scaling(), nullptr);
   const PastModel past =
