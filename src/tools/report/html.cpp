@@ -22,8 +22,6 @@
 namespace kelpie::report {
 namespace {
 
-constexpr std::size_t kLongestTitle = 80;
-
 // One figure per axis, side by side where there is room.
 template <typename Draw>
 std::string panels(const study::StreamResult& result, Draw draw) {
@@ -46,47 +44,9 @@ chart::TextTable axes_table(const study::StreamResult& result, std::vector<std::
   return table;
 }
 
-std::string list_text(const std::vector<std::string>& parts) {
-  if (parts.size() < 2) {
-    return parts.empty() ? "" : parts.front();
-  }
-  const std::span<const std::string> all(parts);
-  return join_text(all.first(all.size() - 1), ", ") + " and " + parts.back();
-}
-
 std::string as_sentence(std::string text) {
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   return text.ends_with(".") || text.ends_with("?") ? text : text + ".";
-}
-
-// What the numbers mean, in sentences: axes by whether the model is of use.
-std::string verdict(const study::StreamResult& result) {
-  std::vector<std::string> useful;
-  std::vector<std::string> useless;
-  std::vector<std::string> unknown;
-  for (const study::AxisResult& axis : result.axes) {
-    const std::string name = chart::shortened(axis.name, kLongestTitle);
-    if (!std::isfinite(axis.r2_final)) {
-      unknown.push_back(name);
-    } else if (axis.r2_final < 0.0) {
-      useless.push_back(fmt::format("{} (R² {})", name, chart::decimal(axis.r2_final)));
-    } else {
-      useful.push_back(fmt::format("{:.1f} % of the variance of {}", 100.0 * axis.r2_final, name));
-    }
-  }
-  std::string text;
-  if (!useful.empty()) {
-    text += "On rows it was never shown, the model at the end of the stream explains " +
-            list_text(useful) + ". ";
-  }
-  if (!useless.empty()) {
-    text +=
-        "It predicts worse than the mean of the held-out rows would: " + list_text(useless) + ". ";
-  }
-  if (!unknown.empty()) {
-    text += "No R² was measured for " + list_text(unknown) + ". ";
-  }
-  return text;
 }
 
 std::string opening(const study::StreamResult& result) {
@@ -99,7 +59,7 @@ std::string opening(const study::StreamResult& result) {
                     "Everything below describes that part only.",
                     chart::grouped(result.samples_shown), chart::grouped(result.training_rows)));
   }
-  text += chart::paragraph("lead", verdict(result));
+  text += chart::paragraph("lead", quality_sentence(result) + ".");
   for (const std::string& warning : warning_lines(result)) {
     text += chart::paragraph("interrupted", as_sentence(warning));
   }

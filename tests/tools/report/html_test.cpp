@@ -79,10 +79,9 @@ TEST(Html, SaysTheResultInWords) {
   result.axes[1].r2_final = -0.31;
   result.axes[2].r2_final = synthetic::kNan;
   const std::string page = report::report_html(result);
-  EXPECT_NE(page.find("explains 95.1 % of the variance of axis0"), std::string::npos);
-  EXPECT_NE(page.find("worse than the mean of the held-out rows would: axis1 (R² −0.310)"),
+  EXPECT_NE(page.find("Predictions of axis0 are very good, of axis1 worse than the mean, of axis2 "
+                      "not measured"),
             std::string::npos);
-  EXPECT_NE(page.find("No R² was measured for axis2"), std::string::npos);
 }
 
 TEST(Html, SaysWhereEverythingCameFrom) {
@@ -101,7 +100,7 @@ TEST(Html, AnInterruptedRunSaysSoBeforeAnyResult) {
   const std::size_t notice = page.find("This run was interrupted after 20 of 2,000");
   ASSERT_NE(notice, std::string::npos);
   EXPECT_LT(notice, page.find("<table"));
-  EXPECT_LT(notice, page.find("No R² was measured"));
+  EXPECT_LT(notice, page.find("not measured"));
   EXPECT_NE(page.find("There is no data"), std::string::npos);
 }
 
