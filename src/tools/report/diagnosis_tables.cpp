@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,23 @@ namespace {
 
 std::string per_cent(double share) {
   return std::isfinite(share) ? fmt::format("{:.0f} %", 100.0 * share) : "–";
+}
+
+// A settled change became the reference of the health: brings the health back to the thrust at the
+// start, and tells when it changed.
+std::string since_the_start(Cause& health, const std::vector<Finding>& findings) {
+  std::string changed;
+  for (const Finding& finding : findings) {
+    for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
+      if (finding.settled && cause.kind == CauseKind::thruster && cause.place == health.place) {
+        health.size *= cause.size;
+        health.lower *= cause.lower;
+        health.upper *= cause.upper;
+        changed += fmt::format("{}at {:.0f} s", changed.empty() ? "" : ", ", finding.since_s);
+      }
+    }
+  }
+  return changed.empty() ? "–" : changed;
 }
 
 }  // namespace
@@ -44,12 +62,14 @@ chart::TextTable change_table(const study::StreamResult& result) {
 chart::TextTable health_table(const study::StreamResult& result) {
   chart::TextTable table{
       .title = "Thrusters in the last minute",
-      .head = {"thruster", "gives", "at least", "at most"},
+      .head = {"thruster", "gives", "at least", "at most", "changed"},
       .rows = {},
-      .notes = {"Of its thrust before, with an interval of 90 % (docs/diagnosis.md)."}};
-  for (const Cause& cause : result.diagnosis.health) {
+      .notes = {"Of its thrust at the start, with an interval of 90 % (docs/diagnosis.md)."},
+      .left = {0, 4}};
+  for (Cause cause : result.diagnosis.health) {
+    const std::string changed = since_the_start(cause, result.diagnosis.findings);
     table.rows.push_back({result.input_names[cause.place], per_cent(cause.size),
-                          per_cent(cause.lower), per_cent(cause.upper)});
+                          per_cent(cause.lower), per_cent(cause.upper), changed});
   }
   return table;
 }

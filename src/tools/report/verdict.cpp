@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <span>
 #include <vector>
 
 #include "chart/wording.hpp"
@@ -48,12 +47,6 @@ std::string quality_of(const study::AxisResult& axis) {
     return r2 < -kTuning.clear_r2 ? "worse than the mean" : "no better than the mean";
   }
   return quality(r2);
-}
-
-std::string list_text(const std::vector<std::string>& parts) {
-  const std::span<const std::string> all(parts);
-  return parts.size() < 2 ? join_text(all, "")
-                          : join_text(all.first(all.size() - 1), ", ") + " and " + parts.back();
 }
 
 // Whether least squares is as good without the commands.
@@ -190,7 +183,7 @@ std::string quality_sentence(const study::StreamResult& result) {
   }
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    text += fmt::format("{} {} {}{}", i == 0 ? "Predictions of" : ", of", list_text(axes[i]),
+    text += fmt::format("{} {} {}{}", i == 0 ? "Predictions of" : ", of", chart::list_text(axes[i]),
                         i == 0 ? "are " : "", words[i]);
   }
   return text;
