@@ -138,6 +138,7 @@ class LiveRun {
       return InterruptGuard::asked() ? live::Engine::Action::stop : live::Engine::Action::proceed;
     });
     service_.stopping();
+    outputs_.health(engine.health());  // what the last samples told
     outputs_.use({});
     finish(engine);
   }

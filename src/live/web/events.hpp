@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "live/configuration.hpp"
 #include "web/feed.hpp"
@@ -16,6 +17,7 @@ namespace kelpie::web {
 ///     samples  [[t, measured, predicted, lower, upper, … of the next axis], …], null: unknown
 ///     said     [[ms since 1970, text], …]
 ///     health   fields by key (live/health_table.hpp), alerts, coefficients
+///     end      the run has ended; nothing follows
 ///
 /// The first text contains all that the feed keeps, so a browser that reconnects starts anew. For
 /// one thread.
@@ -26,6 +28,8 @@ class EventStream {
       : configuration_(configuration), feed_(feed) {}
 
   std::string next();  ///< New events since the previous call; may be empty.
+
+  static constexpr std::string_view kEnd = "event: end\ndata: {}\n\n";
 
  private:
   const live::Configuration& configuration_;

@@ -23,7 +23,8 @@ class PacedStream {
   /// The library's content reader: at most `most` bytes; 0 where the connection was suspended.
   ssize_t read(char* to, std::size_t most);
   void resume();  ///< Permits the next text.
-  void end();     ///< Ends the answer.
+  void end();     ///< Permits the last texts and the event `end`, then ends the answer.
+  bool has_sent_all() const { return says_end_ && sent_ == text_.size(); }
 
  private:
   EventStream events_;
@@ -33,6 +34,7 @@ class PacedStream {
   bool is_due_ = true;  // the next text
   bool waits_ = false;  // suspended
   bool has_ended_ = false;
+  bool says_end_ = false;  // text_ holds the event `end`
 };
 
 }  // namespace kelpie::web

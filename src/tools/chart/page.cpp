@@ -156,7 +156,7 @@ std::string interval_table(const std::vector<IntervalRow>& rows) {
     const auto place = [&](double value) {
       return std::clamp(50.0 * value / row.value, 0.0, 100.0);
     };
-    const auto [from, to] = std::minmax(place(row.low), place(row.high));
+    const auto [from, to] = std::minmax({place(row.low), place(row.high)});
     const bool is_known = std::isfinite(from) && std::isfinite(to);
     const std::string bar =
         is_known

@@ -12,6 +12,7 @@
 #include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "report/provenance.hpp"
 #include "report/recommendation.hpp"
@@ -39,8 +40,8 @@ double inside(double r2, chart::Extent range) {
   return r2 < range.low ? std::nan("") : r2;
 }
 
-// Where learners and least squares lie: the mean and the last value are far below on most logs, and
-// would press all others together.
+// Where the better half of learners and least squares lies, and some of the range below: what is
+// far below would press all others together.
 chart::Extent shown_range(const study::Comparison& comparison, const ComparedR2& r2) {
   std::vector<double> values;
   for (const Contest& contest : comparison.contests) {
@@ -52,7 +53,12 @@ chart::Extent shown_range(const study::Comparison& comparison, const ComparedR2&
       }
     }
   }
-  const auto [low, high] = chart::range_of(values);
+  if (values.empty()) {
+    return {0.0, 1.0};
+  }
+  const auto [lowest, high] = chart::range_of(values);
+  const double middle = quantile(values, 0.5);
+  const double low = std::max(lowest, middle - kTuning.shown_below * (high - middle));
   const double room = 0.1 * std::max(high - low, kTuning.clear_r2);
   return {std::max(low - room, kTuning.lowest_r2), std::min(high + room, 1.0 + room)};
 }
@@ -192,7 +198,7 @@ std::string comparison_figure(const study::Comparison& comparison, const Compare
   return figure.html(
       std::string("1 is perfect, 0 is no better than always predicting the mean of the rows "
                   "judged.") +
-      (clipped ? fmt::format(" What lies below {:.2g} is in the table alone.", range.low) : ""));
+      (clipped ? fmt::format(" What lies below {:.3g} is in the table alone.", range.low) : ""));
 }
 
 std::string contenders_figure(const study::Comparison& comparison, std::size_t axis) {

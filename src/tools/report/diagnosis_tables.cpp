@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -16,23 +15,6 @@ namespace {
 
 std::string per_cent(double share) {
   return std::isfinite(share) ? fmt::format("{:.0f} %", 100.0 * share) : "–";
-}
-
-// A settled change became the reference of the health: brings the health back to the thrust at the
-// start, and tells when it changed.
-std::string since_the_start(Cause& health, const std::vector<Finding>& findings) {
-  std::string changed;
-  for (const Finding& finding : findings) {
-    for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
-      if (finding.settled && cause.kind == CauseKind::thruster && cause.place == health.place) {
-        health.size *= cause.size;
-        health.lower *= cause.lower;
-        health.upper *= cause.upper;
-        changed += fmt::format("{}at {:.0f} s", changed.empty() ? "" : ", ", finding.since_s);
-      }
-    }
-  }
-  return changed.empty() ? "–" : changed;
 }
 
 }  // namespace
@@ -66,10 +48,15 @@ chart::TextTable health_table(const study::StreamResult& result) {
       .rows = {},
       .notes = {"Of its thrust at the start, with an interval of 90 % (docs/diagnosis.md)."},
       .left = {0, 4}};
-  for (Cause cause : result.diagnosis.health) {
-    const std::string changed = since_the_start(cause, result.diagnosis.findings);
+  for (const Cause& health : result.diagnosis.health) {
+    const auto& [cause, times] = study::since_the_start(health, result.diagnosis.findings);
+    std::string changed;
+    for (const double time_s : times) {
+      changed += fmt::format("{}at {:.0f} s", changed.empty() ? "" : ", ", time_s);
+    }
     table.rows.push_back({result.input_names[cause.place], per_cent(cause.size),
-                          per_cent(cause.lower), per_cent(cause.upper), changed});
+                          per_cent(cause.lower), per_cent(cause.upper),
+                          changed.empty() ? "–" : changed});
   }
   return table;
 }

@@ -52,12 +52,13 @@ std::string parameter_bars(const study::Identification& found) {
       continue;
     }
     const double half = format::half_width90(parameter);
+    const std::string unit = format::parameter_unit(found, i);
     const bool is_free = parameter.state == ParameterState::identified;
-    rows.push_back({chart::shortened(parameter.name, chart::kLongestName), parameter.value,
-                    parameter.value - half, parameter.value + half,
-                    chart::significant(parameter.value) + " " +
-                        chart::unit_text(format::parameter_unit(found, i)),
-                    is_free ? "" : format::state_word(parameter.state)});
+    rows.push_back(
+        {chart::shortened(parameter.name, chart::kLongestName), parameter.value,
+         parameter.value - half, parameter.value + half,
+         chart::significant(parameter.value) + (unit == "1" ? "" : " " + chart::unit_text(unit)),
+         is_free ? "" : format::state_word(parameter.state)});
   }
   return rows.empty() ? "" : chart::interval_table(rows);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -152,11 +153,24 @@ std::string headline(const study::OpenLoopResult& result) {
   }
   std::vector<std::string> errors;
   for (std::size_t state = 0; state < result.states.size(); ++state) {
-    errors.push_back(fmt::format("{} is within {:.2g}{}", word_for(result.states[state]),
-                                 horizon.rms[state],
+    errors.push_back(fmt::format("{} {}{:.2g}{}", word_for(result.states[state]),
+                                 state == 0 ? "is within " : "", horizon.rms[state],
                                  result.units[state].empty() ? "" : " " + unit_of(result, state)));
   }
   return "After " + seconds_text(horizon.seconds) + " " + chart::list_text(errors);
+}
+
+// Who is closer to the measured velocities in every state; empty where nobody is.
+std::string closer_sentence(const study::OpenLoopResult& result) {
+  const std::size_t horizon = headline_horizon(result);
+  const std::vector<double>& own = result.scores.front().horizons[horizon].rms;
+  std::vector<std::string> closer;
+  for (const study::OpenLoopScore& score : result.scores) {
+    if (std::ranges::equal(score.horizons[horizon].rms, own, std::less<>{})) {
+      closer.push_back(score.name);
+    }
+  }
+  return closer.empty() ? "" : "Closer in every velocity: " + chart::list_text(closer) + ".";
 }
 
 // The errors at the horizon of the headline, of every contender.
@@ -227,9 +241,11 @@ std::string rollout_html(const study::OpenLoopResult& result) {
                                                result.example_start_s)) +
               example;
   }
+  const std::string closer = closer_sentence(result);
   return chart::html_page("kelpie: rollout",
                           chart::paragraph("over", "The model rolled out by its own velocities") +
                               chart::heading(1, headline(result) + ".") +
+                              (closer.empty() ? "" : chart::paragraph("lead", closer)) +
                               chart::html_table(contenders_table(result)) +
                               chart::paragraph("note", rollout_method(result)),
                           {{"One rollout", example},

@@ -245,6 +245,7 @@ std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal
 namespace {
 
 constexpr double kHardlyLess = 0.005;  // of the score
+constexpr double kShownBelow = 0.1;    // of the best score, in a figure
 constexpr std::size_t kMostRows = 12;
 
 using study::TrialResult;
@@ -362,13 +363,17 @@ std::string cheaper(const study::TuneResult& result, std::size_t axis,
 }
 
 std::string candidates_figure(const study::TuneResult& result, const study::TunedAxis& axis) {
+  const std::vector<const TrialResult*> best_first = judged(result, axis.name, axis.rung);
+  const double best = best_first.empty() ? 1.0 : best_first.front()->score;
+  const chart::Extent range{best - 1.05 * kShownBelow, best + 0.1 * kShownBelow};
   chart::Figure figure({"iterations of the solver per row", {}, chart::ScaleKind::logarithmic},
-                       {"score"},
+                       {"score", range},
                        axis.name + ": candidates by their score and by the solver's work");
   std::size_t given_up = 0;
   std::vector<chart::Point> points;
-  for (const TrialResult* one : judged(result, axis.name, axis.rung)) {
-    points.push_back({std::max(one->iterations_per_row, 1e-3), std::max(one->score, -0.2)});
+  for (const TrialResult* one : best_first) {
+    points.push_back(
+        {std::max(one->iterations_per_row, 1e-3), std::max(one->score, best - kShownBelow)});
   }
   std::ranges::stable_sort(points, {}, &chart::Point::x);
   figure.markers(points, 0, "judged on " + chart::grouped(result.rungs[axis.rung]) + " rows");
@@ -376,10 +381,10 @@ std::string candidates_figure(const study::TuneResult& result, const study::Tune
     given_up += one.axis == axis.name && one.given_up ? 1 : 0;
   }
   return figure.html(
-      fmt::format("The candidates of the last round, on the most rows. Scores below −0.2 are drawn "
-                  "there. Given "
-                  "up in all rounds: {}.",
-                  given_up));
+      fmt::format("The candidates of the last round, on the most rows; those further than {} below "
+                  "the best are "
+                  "drawn there. Given up in all rounds: {}.",
+                  kShownBelow, given_up));
 }
 
 chart::TextTable best_table(const study::TuneResult& result, std::size_t axis,

@@ -10,6 +10,7 @@ inline constexpr struct Tuning {
   double first_window_s = 60.0;      ///< of a figure of samples, at first
   double first_window_rows = 120;    ///< of it, at least
   double lowest_r2 = -0.2;           ///< R² below is drawn at the edge of a figure
+  double shown_below = 4.0;          ///< of a comparison, below the median, per range above it
   double clear_r2 = 0.01;            ///< smallest difference of R² that a recommendation mentions
   double clear_one_step_r2 = 0.001;  ///< the same one step ahead, where every R² is close to 1
   double very_good_r2 = 0.9;         ///< words of a verdict
