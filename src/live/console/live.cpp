@@ -139,6 +139,9 @@ class LiveRun {
     });
     service_.stopping();
     outputs_.health(engine.health());  // what the last samples told
+    if (engine.has_ended()) {
+      outputs_.ended();
+    }
     outputs_.use({});
     finish(engine);
   }

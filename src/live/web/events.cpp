@@ -237,6 +237,10 @@ std::string EventStream::next() {
     health_ = std::move(health);
     out += event("health", health_json(*health_, *before, configuration_));
   }
+  if (samples == 0 && feed_.has_ended() && !has_said_end_) {
+    has_said_end_ = true;
+    out += event("end", Json::object());
+  }
   return out;
 }
 

@@ -14,7 +14,6 @@ const live = (() => {
   let drawn = 0; // when
   let isDue = false;
   let isPaused = false;
-  let hasEnded = false;
   const title = document.title;
 
   function made(tag, content, attributes = {}) {
@@ -39,9 +38,7 @@ const live = (() => {
   function begin(given) {
     plan = given;
     columns = Array.from({ length: 1 + 4 * plan.axes.length }, () => []);
-    hasEnded = false;
     at("source").textContent = plan.source;
-    for (const id of ["save", "freeze", "reset"]) at(id).disabled = false;
     at("said").replaceChildren();
     if (figures.length > 0) return;
     for (const [i, axis] of plan.axes.entries()) {
@@ -221,12 +218,12 @@ const live = (() => {
     on("said", hear);
     on("health", show);
     on("end", () => {
-      hasEnded = true;
-      say("■ The run has ended", "the figures are those of its end");
+      events.close();
+      say("■ The run has ended", "figures and numbers are those of its end");
       for (const id of ["save", "freeze", "reset"]) at(id).disabled = true;
     });
     events.onerror = () => {
-      if (!hasEnded) say("✕ No connection to kelpie; trying again");
+      say("✕ No connection to kelpie; trying again");
       if (events.readyState === EventSource.CLOSED) setTimeout(listen, 3000);
     };
   }

@@ -23,8 +23,8 @@ class PacedStream {
   /// The library's content reader: at most `most` bytes; 0 where the connection was suspended.
   ssize_t read(char* to, std::size_t most);
   void resume();  ///< Permits the next text.
-  void end();     ///< Permits the last texts and the event `end`, then ends the answer.
-  bool has_sent_all() const { return says_end_ && sent_ == text_.size(); }
+  void end();     ///< Permits the last texts, then ends the answer.
+  bool has_sent_all() const { return is_last_ && sent_ == text_.size(); }
 
  private:
   EventStream events_;
@@ -34,7 +34,7 @@ class PacedStream {
   bool is_due_ = true;  // the next text
   bool waits_ = false;  // suspended
   bool has_ended_ = false;
-  bool says_end_ = false;  // text_ holds the event `end`
+  bool is_last_ = false;  // text_
 };
 
 }  // namespace kelpie::web

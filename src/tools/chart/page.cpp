@@ -157,7 +157,7 @@ std::string interval_table(const std::vector<IntervalRow>& rows) {
       return std::clamp(50.0 * value / row.value, 0.0, 100.0);
     };
     const auto [from, to] = std::minmax({place(row.low), place(row.high)});
-    const bool is_known = std::isfinite(from) && std::isfinite(to);
+    const bool is_known = row.value != 0.0 && std::isfinite(row.low) && std::isfinite(row.high);
     const std::string bar =
         is_known
             ? fmt::format("<span class=\"bar\"><i style=\"left:{:.1f}%;width:{:.1f}%\"></i></span>",

@@ -60,7 +60,12 @@ std::string parameter_bars(const study::Identification& found) {
          chart::significant(parameter.value) + (unit == "1" ? "" : " " + chart::unit_text(unit)),
          is_free ? "" : format::state_word(parameter.state)});
   }
-  return rows.empty() ? "" : chart::interval_table(rows);
+  return rows.empty()
+             ? ""
+             : chart::interval_table(rows) +
+                   chart::paragraph("note",
+                                    "surge_force, sway_force, yaw_moment: a constant push, "
+                                    "as of trim, a tether or an offset of a sensor.");
 }
 
 // How far the parameters can be trusted, in one sentence.

@@ -170,7 +170,7 @@ std::string closer_sentence(const study::OpenLoopResult& result) {
       closer.push_back(score.name);
     }
   }
-  return closer.empty() ? "" : "Closer in every velocity: " + chart::list_text(closer) + ".";
+  return closer.empty() ? "" : "Closer in every velocity: " + join_text(closer, "; ") + ".";
 }
 
 // The errors at the horizon of the headline, of every contender.

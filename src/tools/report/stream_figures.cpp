@@ -89,8 +89,8 @@ double motion_in(const study::OneStep& steps, chart::Extent usual, std::size_t b
   return begin == end ? 0.0 : std::sqrt(std::max(0.0, squares / count - sum / count * sum / count));
 }
 
-// Around the last named change; else the stretch of the later half in which the first axis moves
-// most. All rows where they are few.
+// Around the last named change, most of it after the change; else the stretch of the later half in
+// which the first axis moves most. All rows where they are few.
 chart::Extent first_window(const study::StreamResult& result, chart::Extent all) {
   const study::OneStep* const steps = result.axes.empty() ? nullptr : &result.axes.front().one_step;
   if (steps == nullptr || steps->time_s.empty()) {
@@ -103,7 +103,8 @@ chart::Extent first_window(const study::StreamResult& result, chart::Extent all)
   }
   for (const Finding& finding : std::views::reverse(result.diagnosis.findings)) {
     if (finding.state == FindingState::named) {
-      const double from = std::clamp(finding.since_s - 0.5 * width, all.low, all.high - width);
+      const double from =
+          std::clamp(finding.since_s - kTuning.before_change * width, all.low, all.high - width);
       return {from, from + width};
     }
   }

@@ -94,7 +94,7 @@ TEST(Table, TroubleIsSaidWhereThereWasAny) {
 TEST(Table, CoefficientsStandBelowWithUnitsAndChange) {
   const std::string text = report::result_table(synthetic::stream_with_terms(2));
   EXPECT_EQ(report::result_table(synthetic::stream(2)).find("coefficient"), std::string::npos);
-  EXPECT_NE(text.find("axis1 in m s^-2\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("axis1 in m/s²\n"), std::string::npos) << text;
   const std::vector<std::string> all = lines(text);
   const auto row = std::ranges::find_if(
       all, [](const std::string& line) { return line.find("max(th1,0)^2") != std::string::npos; });
