@@ -101,8 +101,8 @@ TEST(Table, CoefficientsStandBelowWithUnitsAndChange) {
   ASSERT_NE(row, all.end());
   std::istringstream words(*row);
   const std::vector<std::string> cells{std::istream_iterator<std::string>(words), {}};
-  EXPECT_EQ(cells, (std::vector<std::string>{"max(th1,0)^2", "0.001000", "–", "m", "rev^-2",
-                                             "0.002000", "−50", "%", "0.04000"}));
+  EXPECT_EQ(cells, (std::vector<std::string>{"max(th1,0)^2", "0.001000", "–", "m/rev²", "0.002000",
+                                             "−50", "%", "0.04000"}));
 }
 
 TEST(Table, CoefficientsFitAHundredColumnsWhateverTheirTexts) {
