@@ -155,7 +155,7 @@ def test_the_first_screen_holds_source_quality_and_alarms(running):
                         ".bottom", name) <= 900, name
     assert "/odom" in page.run("return document.getElementById('source').textContent")
     assert "R²" in page.run("return document.getElementById('good').textContent")
-    assert page.run("return document.getElementById('coefficients').offsetHeight") == 0
+    assert not page.run("return document.getElementById('coefficients').closest('details').open")
     page.wait("document.getElementById('alarm').hidden", 60)
 
 

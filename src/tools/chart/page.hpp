@@ -45,7 +45,7 @@ std::string paragraph(std::string_view css_class, const std::string& text);
 /// Several figures, side by side where there is room.
 std::string panels(const std::vector<std::string>& figures);
 
-/// Two parts beside each other, one below the other on a phone.
+/// Two parts side by side; on a phone the right part follows the left.
 std::string columns(const std::string& left, const std::string& right);
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
@@ -53,10 +53,10 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 /// Names beside their values.
 std::string facts_table(const Facts& facts);
 
-/// Commands to copy, each with what it is for.
+/// Commands to copy, each with its purpose.
 std::string command_lines(const Facts& commands);
 
-/// Text under a line that opens it.
+/// HTML behind a line that unfolds the HTML.
 std::string folded(const std::string& summary, const std::string& html);
 
 /// A table with a head; the first cell of each row is its name. "\n" in a cell begins a new line.

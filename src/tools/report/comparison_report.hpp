@@ -37,7 +37,7 @@ std::string contenders_figure(const study::Comparison& comparison, std::size_t a
 
 // All require a finished comparison with kelpie as the first contest.
 
-/// Which contender to use, in one sentence.
+/// The contender to use, in one sentence.
 std::string comparison_verdict(const study::Comparison& comparison);
 
 /// A row per contender with R² on held-out rows, the best mean of the axes first.

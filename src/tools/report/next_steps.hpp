@@ -6,7 +6,7 @@
 
 namespace kelpie::report {
 
-/// A command that a user needs next, and what it is for.
+/// A command for the user's next step, with its purpose.
 struct NextStep {
   std::string command;
   std::string purpose;

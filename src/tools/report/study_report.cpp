@@ -53,7 +53,7 @@ double drawn(double r2) {
   return std::max(r2, kTuning.lowest_r2);
 }
 
-// The lower end of the figure: R² ends at 1.
+// The lower end of the figure, of learners and least squares: the mean would press them together.
 double lowest_drawn(const StudyView& study, const std::vector<Placed>& vehicles) {
   double low = 0.9;
   for (const Placed& one : vehicles) {
@@ -61,9 +61,8 @@ double lowest_drawn(const StudyView& study, const std::vector<Placed>& vehicles)
       low = std::fmin(low, drawn(one.axis->learners[i].r2_final.tenth));
     }
     low = std::fmin(low, drawn(one.axis->least_squares.tenth));
-    low = std::fmin(low, drawn(one.axis->mean.tenth));
   }
-  return low - 0.02;
+  return low;
 }
 
 std::string vehicle_figure(const StudyView& study, const std::string& name) {
@@ -73,10 +72,11 @@ std::string vehicle_figure(const StudyView& study, const std::string& name) {
   for (const Placed& one : vehicles) {
     places.names.push_back(chart::shortened(one.vehicle->name, kLongestVehicle));
   }
-  chart::Figure figure(places,
-                       {"R² of " + chart::shortened(name, chart::kLongestName),
-                        chart::Extent{lowest_drawn(study, vehicles), 1.02}},
-                       "R² on held-out rows of " + name + " by vehicle and learner");
+  const double low = lowest_drawn(study, vehicles);
+  chart::Figure figure(
+      places,
+      {"R² of " + chart::shortened(name, chart::kLongestName), chart::Extent{low - 0.02, 1.02}},
+      "R² on held-out rows of " + name + " by vehicle and learner");
   const std::vector<fleet::LearnerConfig>& learners = study.results.plan().learners;
   const auto series = static_cast<double>(learners.size() + 2);
   const auto draw = [&](std::size_t style, const std::string& who, auto spread) {
@@ -85,8 +85,8 @@ std::string vehicle_figure(const StudyView& study, const std::string& name) {
     std::vector<chart::Point> tenths;
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
       const fleet::Spread& values = spread(*vehicles[i].axis);
-      medians.push_back({static_cast<double>(i) + beside, drawn(values.median)});
-      tenths.push_back({static_cast<double>(i) + beside, drawn(values.tenth)});
+      medians.push_back({static_cast<double>(i) + beside, std::max(values.median, low)});
+      tenths.push_back({static_cast<double>(i) + beside, std::max(values.tenth, low)});
     }
     figure.markers(medians, style, who);
     figure.dots(tenths, style, "");
@@ -101,7 +101,8 @@ std::string vehicle_figure(const StudyView& study, const std::string& name) {
        [](const AxisSummary& axis) -> const auto& { return axis.mean; });
   return figure.html(fmt::format(
       "At the end of the stream: medians over the runs, small dots the 10th percentile. What lies "
-      "below −0.2 is drawn there.{}",
+      "below {:.2g} is drawn there.{}",
+      low,
       study.summary.vehicles.size() > kMostVehicles
           ? fmt::format(" The {} vehicles where {} does worst.", kMostVehicles,
                         learners.front().name)

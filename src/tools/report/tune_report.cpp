@@ -324,6 +324,36 @@ std::string gain_sentence(const study::TuneResult& result) {
                         : "Tuned settings score higher: " + chart::list_text(gained) + ".";
 }
 
+// The trial of the chosen settings on the last round; null where they were not judged there.
+const TrialResult* chosen_trial(const study::TuneResult& result, std::size_t axis) {
+  const study::TunedAxis& tuned = result.axes[axis];
+  const std::string settings = study::settings_of(result.tuned, axis);
+  for (const TrialResult* one : judged(result, tuned.name, tuned.rung)) {
+    if (one->settings == settings) {
+      return one;
+    }
+  }
+  return nullptr;
+}
+
+// The presets that score higher than the tuned settings, by the mean over the axes: the search goes
+// around the settings it started from, and these may have been a worse place than a preset.
+std::string better_presets(const study::TuneResult& result) {
+  std::vector<std::string> better;
+  for (std::size_t i = 0; i < result.references.size(); ++i) {
+    double sum = 0.0;
+    for (const study::TunedAxis& axis : result.axes) {
+      sum += axis.all.references[i] - axis.all.tuned;
+    }
+    if (sum > kTuning.clear_r2 * static_cast<double>(result.axes.size())) {
+      better.push_back(result.references[i].first);
+    }
+  }
+  return better.empty() ? ""
+                        : "Without this search a preset scores higher than the tuned settings: " +
+                              chart::list_text(better) + ".";
+}
+
 // Scores and the work of the solver before and after.
 chart::TextTable gain_table(const study::TuneResult& result) {
   chart::TextTable table{
@@ -337,12 +367,12 @@ chart::TextTable gain_table(const study::TuneResult& result) {
       {0, 6}};
   for (std::size_t i = 0; i < result.axes.size(); ++i) {
     const study::TunedAxis& axis = result.axes[i];
-    const std::vector<const TrialResult*> best = judged(result, axis.name, axis.rung);
+    const TrialResult* const chosen = chosen_trial(result, i);
     table.rows.push_back({chart::shortened(axis.name, chart::kLongestName),
                           chart::decimal(axis.all.base), chart::decimal(axis.all.tuned),
                           chart::decimal(gain_of(axis)), chart::decimal(axis.all.least_squares),
-                          best.empty() ? "–" : chart::significant(best.front()->iterations_per_row),
-                          best.empty() ? "–" : name_of(*best.front(), result, i)});
+                          chosen == nullptr ? "–" : chart::significant(chosen->iterations_per_row),
+                          chosen == nullptr ? "–" : name_of(*chosen, result, i)});
   }
   return table;
 }
@@ -410,6 +440,9 @@ std::string tune_html(const study::TuneResult& result, const study::TuneJournal:
   }
   if (const std::string worse = worse_text(result); !worse.empty()) {
     opening += chart::paragraph("interrupted", worse + ".");
+  }
+  if (const std::string better = better_presets(result); !better.empty()) {
+    opening += chart::paragraph("interrupted", better);
   }
   const chart::TextTable gained = gain_table(result);
   opening += chart::html_table(gained);

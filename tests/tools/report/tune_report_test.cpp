@@ -83,6 +83,14 @@ TEST(TuneReport, ThePageBeginsWithTheGain) {
   EXPECT_LT(some.find("Tuned settings score higher: vdot by 0.050."), some.find("<table"));
   EXPECT_NE(some.find("--config tuned.toml"), std::string::npos);
   EXPECT_NE(some.find("1 less the mean squared error"), std::string::npos) << "the score defined";
+  EXPECT_EQ(some.find("a preset scores higher"), std::string::npos);
+  for (study::TunedAxis& axis : result.axes) {
+    axis.all.references[0] = 0.97;
+  }
+  EXPECT_NE(report::tune_html(result, kHeader)
+                .find("a preset scores higher than the tuned settings: "
+                      "default."),
+            std::string::npos);
   result.axes[0].all.tuned = result.axes[1].all.tuned = result.axes[2].all.tuned = NAN;
   EXPECT_NE(report::tune_html(result, kHeader).find("ended before any settings"),
             std::string::npos);
