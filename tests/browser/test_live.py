@@ -168,6 +168,7 @@ def test_after_a_replay_the_figures_stay_and_the_end_is_said(mission, tmp_path):
         assert page.run(f"return {NEWEST}") > 880
         assert page.run("return live.figures().every(({ figure }) => figure.plot.width > 0)")
         assert page.run("return document.getElementById('save').disabled")
+        assert page.run("return document.getElementById('alarm').hidden"), "silence is no alarm now"
         assert page.console() == []
 
 

@@ -14,6 +14,7 @@ const live = (() => {
   let drawn = 0; // when
   let isDue = false;
   let isPaused = false;
+  let alerts = [];
   const title = document.title;
 
   function made(tag, content, attributes = {}) {
@@ -169,6 +170,7 @@ const live = (() => {
   }
 
   function show(health) {
+    alerts = health.alerts;
     alarm(health);
     isPaused = health.learning_paused;
     at("freeze").textContent = isPaused ? "Resume learning" : "Freeze learning";
@@ -219,6 +221,7 @@ const live = (() => {
     on("health", show);
     on("end", () => {
       events.close();
+      alarm({ alerts: alerts.filter(({ key }) => key === "vehicle") }); // all signals are silent now
       say("■ The run has ended", "figures and numbers are those of its end");
       for (const id of ["save", "freeze", "reset"]) at(id).disabled = true;
     });
