@@ -209,7 +209,7 @@ bool of_the_paper(const StreamStudy& study) {
 
 std::string opening(const Reproduction& result) {
   const ReproductionPlan& plan = result.plan;
-  std::string text = chart::heading(1, "What of the paper kelpie measures again");
+  std::string text = chart::heading(1, "How far kelpie reproduces the paper");
   text += chart::paragraph(
       "lead",
       "Wehbe, Hildebrandt & Kirchner, “A Framework for On-line Learning of "

@@ -143,6 +143,35 @@ def test_a_silence_is_said_and_shown(running):
     assert page.run("return live.columns()[1].includes(null)")  # a gap, not a line across it
 
 
+def test_the_first_screen_holds_source_quality_and_alarms(running):
+    page = open_page(running.address, 1400)
+    wait_for_model(page)
+    page.wait(f"{NEWEST} > 123", 60)
+    page.wait("!document.getElementById('alarm').hidden", 30)
+    assert "is silent" in page.run("return document.getElementById('alarm').textContent")
+    assert page.run("return document.title").startswith("⚠ kelpie live: live")
+    for name in ("source", "alarm", "state", "good"):
+        assert page.run("return document.getElementById(arguments[0]).getBoundingClientRect()"
+                        ".bottom", name) <= 900, name
+    assert "/odom" in page.run("return document.getElementById('source').textContent")
+    assert "R²" in page.run("return document.getElementById('good').textContent")
+    assert not page.run("return document.getElementById('coefficients').closest('details').open")
+    page.wait("document.getElementById('alarm').hidden", 60)
+
+
+def test_after_a_replay_the_figures_stay_and_the_end_is_said(mission, tmp_path):
+    with live_run(tmp_path, mission, "60") as run:
+        page = open_page(run.address)
+        wait_for_model(page)
+        run.process.wait(timeout=120)
+        page.wait(f"{STATE}.includes('The run has ended')", 20)
+        assert page.run(f"return {NEWEST}") > 880
+        assert page.run("return live.figures().every(({ figure }) => figure.plot.width > 0)")
+        assert page.run("return document.getElementById('save').disabled")
+        assert page.run("return document.getElementById('alarm').hidden"), "silence is no alarm now"
+        assert page.console() == []
+
+
 def test_it_says_that_kelpie_is_gone_and_finds_it_again(mission, tmp_path):
     with live_run(tmp_path, mission, "8") as run:
         page = open_page(run.address)

@@ -29,6 +29,18 @@ duration_s = 8100.0
 """
 
 
+UNITS = "u=m/s,v=m/s,r=rad/s,udot=m/s^2,vdot=m/s^2,rdot=rad/s^2"
+STUDY = """
+name = 'two missions'
+[[vehicle]]
+name = 'small'
+logs = ['short.csv']
+[[vehicle]]
+name = 'damaged'
+logs = ['damaged.csv']
+"""
+
+
 # The real log of this machine has no place here: its figures are those of any stream.
 WITHOUT_DATA = {name: value for name, value in os.environ.items() if name != "KELPIE_DATA_DIR"}
 
@@ -67,7 +79,14 @@ def pages(tmp_path_factory) -> dict[str, Path]:
     hostile.write_text(evil_log(folder / "short.csv"))
     call("kelpie", "learn", hostile, "--targets", "udot" + EVIL, "--targets",
          "vdot" + 10_000 * "x", "--set", "learner=svr", "--out", "hostile", folder=folder)
-    found = {"learn": "learn/report.html", "axis": "axis/report.html",
+    call("kelpie", "simulate", SOURCE_DIR / "scenarios/diagnosis.toml", "--out", "damaged.csv",
+         folder=folder)
+    call("kelpie", "learn", "damaged.csv", "--units", UNITS, "--out", "damaged", folder=folder)
+    call("kelpie", "identify", "log.csv", "--out", "identify", folder=folder)
+    (folder / "study.toml").write_text(STUDY)
+    call("kelpie", "study", "study.toml", "--out", "study", folder=folder)
+    found = {"damaged": "damaged/report.html", "identify": "identify/identify.html",
+             "study": "study/study.html", "learn": "learn/report.html", "axis": "axis/report.html",
              "rollout": "rollout/report.html", "tune": "tune/tune.html",
              "compare": "compare/compare.html", "hostile": "hostile/report.html"}
     if (BUILD_DIR / "kelpie-lab").exists():
@@ -101,6 +120,12 @@ def settle(page) -> None:
         "setTimeout(done)));")
 
 
+def show_all(page) -> None:
+    """Of the samples; a minute is shown first."""
+    page.run("const [first] = kelpie.figures; first.showAll(first.whole)")
+    settle(page)
+
+
 def plot_of(page, number: int = 0):
     plot = page.driver.find_elements("css selector", ".u-over")[number]
     page.run("arguments[0].scrollIntoView({block: 'center'})", plot)
@@ -121,7 +146,8 @@ def test_every_page_is_drawn_without_a_word_on_the_console(pages, width, dark):
         page.wait_until_drawn()
         assert page.console() == [], name
         figures, drawn, wide, paper = page.run(
-            "return [document.querySelectorAll('figure.chart').length, kelpie.figures.size,"
+            "const all = [...document.querySelectorAll('figure.chart')];"
+            "return [all.length, all.filter((one) => one.querySelector('.uplot')).length,"
             "document.documentElement.scrollWidth,"
             "getComputedStyle(document.body).backgroundColor]")
         assert drawn == figures > 0, name
@@ -130,6 +156,96 @@ def test_every_page_is_drawn_without_a_word_on_the_console(pages, width, dark):
         assert not page.run("return window.hacked"), name
         assert "\u202e" not in page.run("return document.documentElement.textContent"), name
         page.screenshot(f"{name}_{width}_{'dark' if dark else 'light'}")
+
+
+FIRST_SCREEN = """
+const box = (node) => node.getBoundingClientRect();
+const texts = [...document.querySelectorAll("h1, p, td, th, code, figcaption")]
+    .filter((node) => box(node).height > 0 && box(node).bottom <= 900)
+    .map((node) => node.textContent);
+return [texts.join(" | "), document.documentElement.scrollHeight];
+"""
+
+
+def first_screen(page_path) -> tuple[str, int]:
+    """What stands in the first 900 pixels of a wide window, and how high the page is."""
+    page = open_page(page_path, 1400)
+    page.wait_until_drawn()
+    text, height = page.run(FIRST_SCREEN)
+    assert page.console() == []
+    return text, height
+
+
+@pytest.mark.parametrize(("name", "words"), [
+    ("learn", ["Predictions of", "very good", "No change of the vehicle", "velocities", "u, v, r",
+               "commands", "th1, th2, th3", "least squares", "kelpie rollout log.csv"]),
+    ("damaged", ["th2 gives 60", "since 1500 s", "Predictions of", "velocities", "commands",
+                 "at 1500 s"]),
+    ("compare", ["kelpie beside simpler models", "mean of the axes", "least squares",
+                 "behind the best"]),
+    ("rollout", ["After 10 s surge is within", "velocity held", "Root mean square errors"]),
+    ("tune", ["gain", "least squares", "Score: each stretch"]),
+    ("identify", ["parameters identified", "90 % interval", "surge_inertia"]),
+    ("study", ["Changes were found on damaged", "th2 gives"]),
+])
+def test_the_first_screen_holds_the_message(pages, name, words):
+    text, _ = first_screen(pages[name])
+    assert [word for word in words if word not in text] == [], text
+
+
+def test_the_headline_comes_first_and_units_are_as_people_write_them(pages):
+    page = open_page(pages["damaged"], 1400)
+    page.wait_until_drawn()
+    assert page.run("return document.querySelector('h1').textContent").startswith("th2 gives 60")
+    assert page.run("return [...kelpie.figures][0].description.y.label") == "udot in m/s²"
+    marks = page.run("return [...kelpie.figures][0].description.marks.map(({ x }) => x)")
+    assert all(1499 < mark < 1501 for mark in marks), "changes stand where they happened"
+    first, last = windows(page)[0]
+    assert last - first == pytest.approx(60) and first < 1500 < last
+
+
+@pytest.mark.parametrize("name", ["learn", "damaged"])
+def test_the_page_of_a_run_is_no_scroll(pages, name):
+    assert first_screen(pages[name])[1] <= 5000
+
+
+def test_the_errors_stand_below_the_curves(learned):
+    above, below = learned.run("""return [...kelpie.figures].slice(0, 2).map((f) =>
+        [f.description.series.map((one) => one.name), f.frame.getBoundingClientRect().top,
+         f.plot.scales.x.min])""")
+    assert "measured" in above[0] and below[0][-1] == "measured less predicted"
+    assert above[1] < below[1] and above[2] == below[2]
+    wrong = learned.run("""
+        const [curve, error] = [...kelpie.figures];
+        const row = (f, name) => f.table[1 + f.rows.findIndex((one) => one.name === name)];
+        const measured = row(curve, "measured"), predicted = row(curve, "predicted");
+        return row(error, "measured less predicted").filter((e, i) =>
+            e !== null && Math.abs(e - (measured[i] - predicted[i])) > 1e-9).length""")
+    assert wrong == 0
+
+
+def test_a_link_opens_the_folded_part_and_its_figures_fill_it(pages):
+    page = open_page(pages["learn"])
+    page.wait_until_drawn()
+    assert page.run("return document.querySelectorAll('details[open]').length") == 0
+    page.driver.find_element("link text", "Details").click()
+    page.wait("document.querySelectorAll('details.section[open]').length === 1")
+    page.run("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+    settle(page)
+    narrow = page.run("""return [...kelpie.figures].filter((f) =>
+        f.plot.width < f.parent.clientWidth - 1 && !f.description.square).length""")
+    assert narrow == 0
+
+
+def test_on_a_phone_a_shadow_says_that_there_is_more(pages):
+    page = open_page(pages["learn"], 400)
+    page.wait_until_drawn()
+    page.run("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+    wide = page.run("""return [...document.querySelectorAll('.scroll')].filter((one) =>
+        one.scrollWidth > one.clientWidth).map((one) =>
+        [getComputedStyle(one).backgroundAttachment, getComputedStyle(one).backgroundImage])""")
+    assert len(wide) > 0
+    assert all("scroll" in attached and "gradient" in image for attached, image in wide)
 
 
 def test_every_logarithmic_axis_says_where_it_is(pages):
@@ -184,6 +300,7 @@ def test_lines_with_times_of_their_own_have_no_gaps(learned):
 
 def test_dragging_zooms_all_figures_over_time_and_a_double_click_undoes_it(learned):
     plot = plot_of(learned)
+    show_all(learned)
     whole = windows(learned)
     assert len(whole) >= 2
     width = plot.size["width"]
@@ -201,6 +318,8 @@ def test_dragging_zooms_all_figures_over_time_and_a_double_click_undoes_it(learn
 
 
 def test_figures_out_of_sight_follow_when_they_are_scrolled_to(learned):
+    learned.run("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+    settle(learned)
     learned.run("[...kelpie.figures][0].showAll([100, 200])")
     learned.run("[...kelpie.figures].findLast((f) => f.group === 'time').frame.scrollIntoView()")
     learned.wait("[...kelpie.figures].findLast((f) => f.group === 'time').plot.scales.x.min === 100")
@@ -241,6 +360,7 @@ def test_a_series_is_hidden_and_shown_from_the_legend(learned):
 def test_the_keyboard_zooms_pans_and_moves_the_cursor(learned):
     plot_of(learned)
     frame = learned.driver.find_element("css selector", ".frame")
+    show_all(learned)
     first, last = windows(learned)[0]
     frame.send_keys("+")
     settle(learned)
@@ -270,6 +390,7 @@ def test_fingers_pan_and_zoom(pages):
     box = page.run("const b = arguments[0].getBoundingClientRect(); return [b.x, b.y, b.width,"
                    " b.height]", plot)
     x, y = box[0] + box[2] / 2, box[1] + box[3] / 2
+    show_all(page)
     first, last = windows(page)[0]
     touch(page, "touchStart", (x - 30, y), (x + 30, y))
     for reach in (40, 50, 60):
@@ -289,6 +410,7 @@ def test_fingers_pan_and_zoom(pages):
 
 def test_without_javascript_tables_and_sentences_remain(pages):
     page = open_page(pages["learn"], scripts=False)
+    page.driver.find_element("xpath", "//summary[text()='Solver']").click()  # folds need none
     text = page.driver.find_element("css selector", "body").text
     assert "over time in s: measured from" in text
     assert "least squares" in text and "KKT" in text

@@ -138,6 +138,10 @@ class LiveRun {
       return InterruptGuard::asked() ? live::Engine::Action::stop : live::Engine::Action::proceed;
     });
     service_.stopping();
+    outputs_.health(engine.health());  // what the last samples told
+    if (engine.has_ended()) {
+      outputs_.ended();
+    }
     outputs_.use({});
     finish(engine);
   }

@@ -51,7 +51,8 @@ struct AxisHealth {
   std::vector<Coefficient> coefficients{};
 };
 
-/// Share of its thrust that a thruster gives, with an interval (DynamicsModel::diagnosis()).
+/// Share of its thrust at the start that a thruster gives, with an interval
+/// (study::since_the_start()).
 struct ThrusterHealth {
   std::string name;
   double share = 1.0;

@@ -42,6 +42,7 @@ class Output {
   virtual void predicted(const PredictedSample& /*sample*/) {}  ///< In the receiving thread.
   virtual void health(const Health& /*health*/) {}    ///< Once a second, in the same thread.
   virtual void event(const std::string& /*line*/) {}  ///< A line of text. In either thread.
+  virtual void ended() {}                             ///< The recording has ended; nothing follows.
 };
 
 }  // namespace kelpie::live

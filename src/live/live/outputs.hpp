@@ -37,16 +37,17 @@ class Outputs final : public Output {
   void predicted(const PredictedSample& sample) override { pass(&Output::predicted, sample); }
   void health(const Health& health) override { pass(&Output::health, health); }
   void event(const std::string& line) override { pass(&Output::event, line); }
+  void ended() override { pass(&Output::ended); }
 
  private:
-  template <typename Result>
-  void pass(void (Output::*function)(const Result&), const Result& result) {
+  template <typename... Result>
+  void pass(void (Output::*function)(const Result&...), const Result&... result) {
     const std::lock_guard lock(mutex_);
     for (const std::unique_ptr<Output>& output : outputs_) {
-      (output.get()->*function)(result);
+      (output.get()->*function)(result...);
     }
     for (Output* const output : lasting_) {
-      (output->*function)(result);
+      (output->*function)(result...);
     }
   }
 

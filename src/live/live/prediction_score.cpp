@@ -10,6 +10,7 @@
 #include "kelpie/motion/diagnosis.hpp"
 #include "live/tuning.hpp"
 #include "study/baselines.hpp"
+#include "study/diagnosis.hpp"
 #include "study/metrics.hpp"
 
 namespace kelpie::live {
@@ -99,7 +100,8 @@ void PredictionScore::report(const DynamicsModel& model, LearnerHealth& health) 
   }
   health.thrusters.clear();
   if (model.diagnosis() != nullptr) {
-    for (const Cause& cause : model.diagnosis()->health()) {
+    for (const Cause& now : model.diagnosis()->health()) {
+      const Cause cause = study::since_the_start(now, model.diagnosis()->findings()).cause;
       health.thrusters.push_back({.name = inputs_[cause.place],
                                   .share = cause.size,
                                   .lower = cause.lower,

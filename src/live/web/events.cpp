@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "chart/wording.hpp"
+#include "core/text.hpp"
 #include "file/json.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/health_table.hpp"
@@ -65,21 +67,37 @@ Json fields_plan() {
   return fields;
 }
 
+// The topics of the signals, the first of many.
+std::string source_text(const live::Configuration& configuration) {
+  std::vector<std::string> topics;
+  for (const StreamPlan::Source& source : configuration.plan.sources) {
+    const std::string topic = source.from.substr(0, source.from.find(':'));
+    if (!topic.empty() && std::ranges::find(topics, topic) == topics.end()) {
+      topics.push_back(topic);
+    }
+  }
+  const std::size_t more = topics.size() > kTuning.topics ? topics.size() - kTuning.topics : 0;
+  topics.resize(topics.size() - more);
+  return join_text(topics, ", ") + (more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
 Json plan_json(const live::Configuration& configuration) {
   const log::Dataset names = names_of(configuration);
-  return {{"axes",
-           file::list(
-               configuration.plan.targets,
-               [&](const std::string& axis) {
-                 return Json{{"name", text(axis)}, {"unit", text(study::unit_text(names, axis))}};
-               })},
-          {"window_s", kTuning.window_s},
-          {"gap_s", configuration.plan.gap_s},
-          {"fields",
-           {{"run", fields_plan<live::Health>()},
-            {"axes", fields_plan<live::AxisHealth>()},
-            {"signals", fields_plan<live::SourceHealth>()},
-            {"thrusters", fields_plan<live::ThrusterHealth>()}}}};
+  return {
+      {"axes", file::list(configuration.plan.targets,
+                          [&](const std::string& axis) {
+                            return Json{
+                                {"name", text(axis)},
+                                {"unit", text(chart::unit_text(study::unit_text(names, axis)))}};
+                          })},
+      {"source", text(source_text(configuration))},
+      {"window_s", kTuning.window_s},
+      {"gap_s", configuration.plan.gap_s},
+      {"fields",
+       {{"run", fields_plan<live::Health>()},
+        {"axes", fields_plan<live::AxisHealth>()},
+        {"signals", fields_plan<live::SourceHealth>()},
+        {"thrusters", fields_plan<live::ThrusterHealth>()}}}};
 }
 
 // Six digits of each: more than a screen has pixels.
@@ -103,7 +121,7 @@ Json coefficient_json(const Coefficient& coefficient, const std::string& axis,
   return {{"term", text(coefficient.term)},
           {"value", file::number(coefficient.value)},
           {"error", file::number(coefficient.error)},
-          {"unit", text(study::coefficient_unit(coefficient.term, names, axis))}};
+          {"unit", text(chart::unit_text(study::coefficient_unit(coefficient.term, names, axis)))}};
 }
 
 template <typename Of>
@@ -218,6 +236,10 @@ std::string EventStream::next() {
     const std::shared_ptr<const live::Health> before = health_ ? health_ : health;
     health_ = std::move(health);
     out += event("health", health_json(*health_, *before, configuration_));
+  }
+  if (samples == 0 && feed_.has_ended() && !has_said_end_) {
+    has_said_end_ = true;
+    out += event("end", Json::object());
   }
   return out;
 }

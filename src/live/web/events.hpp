@@ -16,6 +16,7 @@ namespace kelpie::web {
 ///     samples  [[t, measured, predicted, lower, upper, … of the next axis], …], null: unknown
 ///     said     [[ms since 1970, text], …]
 ///     health   fields by key (live/health_table.hpp), alerts, coefficients
+///     end      the recording has ended; nothing follows
 ///
 /// The first text contains all that the feed keeps, so a browser that reconnects starts anew. For
 /// one thread.
@@ -31,6 +32,7 @@ class EventStream {
   const live::Configuration& configuration_;
   const Feed& feed_;
   bool has_begun_ = false;
+  bool has_said_end_ = false;
   std::uint64_t next_row_ = 0;
   std::uint64_t next_line_ = 0;
   std::shared_ptr<const live::Health> health_;

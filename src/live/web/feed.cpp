@@ -44,6 +44,16 @@ void Feed::add(const std::string& line) {
   }
 }
 
+void Feed::end() {
+  const std::lock_guard lock(mutex_);
+  has_ended_ = true;
+}
+
+bool Feed::has_ended() const {
+  const std::lock_guard lock(mutex_);
+  return has_ended_;
+}
+
 std::vector<double> Feed::rows(std::uint64_t& next) const {
   const std::lock_guard lock(mutex_);
   std::vector<double> rows;

@@ -32,6 +32,7 @@ class Feed {
   void add(const live::LearnedSample& sample);
   void add(const live::Health& health);
   void add(const std::string& line);
+  void end();  ///< The recording has ended: nothing is added any more.
 
   std::size_t row_size() const { return 1 + kPerAxis * axes_; }
 
@@ -43,6 +44,7 @@ class Feed {
   std::vector<double> rows(std::uint64_t& next) const;
   std::vector<Line> lines(std::uint64_t& next) const;
   std::shared_ptr<const live::Health> health() const;  ///< The latest; null before the first.
+  bool has_ended() const;
 
  private:
   std::size_t axes_;
@@ -53,6 +55,7 @@ class Feed {
   std::deque<Line> lines_;
   std::uint64_t line_count_ = 0;  // total
   std::shared_ptr<const live::Health> health_;
+  bool has_ended_ = false;
 };
 
 }  // namespace kelpie::web

@@ -7,12 +7,15 @@ const live = (() => {
   const at = (id) => document.getElementById(id);
   const kDrawMs = 250; // quicker than the eye needs
   const kMostSaid = 100;
+  const kMostAlarms = 3;
   let plan = null;
   let columns = []; // time, then measured, predicted, middle and half of the interval of each axis
   let figures = [];
   let drawn = 0; // when
   let isDue = false;
   let isPaused = false;
+  let alerts = [];
+  const title = document.title;
 
   function made(tag, content, attributes = {}) {
     const one = document.createElement(tag);
@@ -36,6 +39,7 @@ const live = (() => {
   function begin(given) {
     plan = given;
     columns = Array.from({ length: 1 + 4 * plan.axes.length }, () => []);
+    at("source").textContent = plan.source;
     at("said").replaceChildren();
     if (figures.length > 0) return;
     for (const [i, axis] of plan.axes.entries()) {
@@ -48,7 +52,7 @@ const live = (() => {
   function description({ axis, first }) {
     return {
       label: `${axis.name}: measured, predicted beforehand, and the interval.`,
-      x: { label: "time/s" }, y: { label: axis.unit ? `${axis.name} [${axis.unit}]` : axis.name },
+      x: { label: "time in s" }, y: { label: axis.unit ? `${axis.name} in ${axis.unit}` : axis.name },
       link: "time", marks: [], guides: [], height: 220,
       series: [
         { kind: "band", name: "interval", style: 1, x: 0, y: first + 2, half: first + 3 },
@@ -150,7 +154,24 @@ const live = (() => {
     return [axis, term, number(value, 4), error === null ? "" : `± ${number(error, 2)}`, unit];
   }
 
+  // What an operator has to know first: the vehicle, then what else is wrong.
+  function alarm({ alerts }) {
+    const place = at("alarm");
+    const lines = [...alerts].sort((a, b) => (b.key === "vehicle") - (a.key === "vehicle"))
+      .filter(({ level, key }) => level !== "ok" && !["ready", "learning_paused"].includes(key))
+      .slice(0, kMostAlarms).map((one) => one.text);
+    const told = lines.join("\n");
+    if (place.dataset.told === told) return;
+    place.dataset.told = told;
+    place.hidden = lines.length === 0;
+    place.className = alerts.some(({ level, key }) => level === "error" || key === "vehicle") ? "bad" : "warn";
+    place.replaceChildren(...lines.map((line) => made("p", `⚠ ${line}`, { dir: "auto" })));
+    document.title = lines.length === 0 ? title : `⚠ ${title}`;
+  }
+
   function show(health) {
+    alerts = health.alerts;
+    alarm(health);
     isPaused = health.learning_paused;
     at("freeze").textContent = isPaused ? "Resume learning" : "Freeze learning";
     say(isPaused ? "❚❚ Learning is frozen: the model stays as it is"
@@ -158,7 +179,9 @@ const live = (() => {
       : health.axes.every((axis) => axis.ready) ? "▶ Learning" : "▶ Learning; too few samples for a model so far",
     `${count(health.learned)} samples learned, ${number(health.t, 6)} s`);
     const { run, axes, signals, thrusters } = plan.fields;
-    listed(at("good"), axes, health.axes);
+    const isGood = ({ key, place }) => (key === "r2" && place < 2) || key === "coverage";
+    listed(at("good"), axes.filter(isGood), health.axes);
+    listed(at("learners"), axes.filter((field) => !isGood(field)), health.axes);
     listed(at("signals"), signals.filter(({ kind }) => kind !== "flag"), health.signals,
       { from: ({ from }) => from, condition: (signal) => condition(signal, health) },
       { "found since the start": ({ found }) => found || "–" }, "signals");
@@ -196,6 +219,12 @@ const live = (() => {
     on("samples", take);
     on("said", hear);
     on("health", show);
+    on("end", () => {
+      events.close();
+      alarm({ alerts: alerts.filter(({ key }) => key === "vehicle") }); // all signals are silent now
+      say("■ The run has ended", "figures and numbers are those of its end");
+      for (const id of ["save", "freeze", "reset"]) at(id).disabled = true;
+    });
     events.onerror = () => {
       say("✕ No connection to kelpie; trying again");
       if (events.readyState === EventSource.CLOSED) setTimeout(listen, 3000);

@@ -9,12 +9,13 @@
 namespace kelpie::web {
 
 ssize_t PacedStream::read(char* to, std::size_t most) {
-  if (has_ended_) {
-    return MHD_CONTENT_READER_END_OF_STREAM;
-  }
-  if (sent_ == text_.size() && std::exchange(is_due_, false)) {
+  if (!is_last_ && sent_ == text_.size() && std::exchange(is_due_, false)) {
     text_ = events_.next();
     sent_ = 0;
+    is_last_ = has_ended_;
+  }
+  if (has_sent_all()) {
+    return MHD_CONTENT_READER_END_OF_STREAM;
   }
   const std::size_t bytes = std::min(most, text_.size() - sent_);
   if (bytes == 0) {

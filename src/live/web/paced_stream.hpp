@@ -23,7 +23,8 @@ class PacedStream {
   /// The library's content reader: at most `most` bytes; 0 where the connection was suspended.
   ssize_t read(char* to, std::size_t most);
   void resume();  ///< Permits the next text.
-  void end();     ///< Ends the answer.
+  void end();     ///< Permits the last texts, then ends the answer.
+  bool has_sent_all() const { return is_last_ && sent_ == text_.size(); }
 
  private:
   EventStream events_;
@@ -33,6 +34,7 @@ class PacedStream {
   bool is_due_ = true;  // the next text
   bool waits_ = false;  // suspended
   bool has_ended_ = false;
+  bool is_last_ = false;  // text_
 };
 
 }  // namespace kelpie::web

@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 #include "chart/page.hpp"
 #include "chart/page_assets.hpp"
-#include "core/text.hpp"
 #include "web/listener.hpp"
 #include "web/tuning.hpp"
 
@@ -29,10 +29,15 @@ std::string token_for(const live::LiveSettings& settings, const std::string& hos
 }
 
 // Each part that the script fills in has a place from the start: nothing moves later.
-std::string page_html(const StreamPlan& plan) {
-  const std::string title = "kelpie live: " + join_text(plan.targets, ", ");
-  return chart::live_page(title, chart::heading(1, title) + R"(<div id="live">
+std::string page_html(const live::Configuration& configuration) {
+  const std::string vehicle = std::filesystem::path(configuration.file).stem().string();
+  return chart::live_page(
+      "kelpie live: " + vehicle,
+      R"(<div id="live"><p class="over">kelpie live · <span id="source">…</span></p>
+)" + chart::heading(1, vehicle) +
+          R"(<div id="alarm" role="alert" hidden=""></div>
 <p class="lead" id="state" role="status">Connecting …</p>
+<div class="columns"><div id="good"></div><div id="thrusters"></div></div>
 <p class="buttons"><button type="button" id="save">Save</button>
 <button type="button" id="freeze">Freeze learning</button>
 <button type="button" id="reset">Reset …</button></p>
@@ -41,15 +46,15 @@ was learned stays in the checkpoint before, until the next one is written.</p>
 <p class="buttons"><button type="button" id="no" autofocus>Keep it</button>
 <button type="button" id="yes">Begin anew</button></p></dialog>
 <section aria-label="curves"><div id="curves"></div></section>
-<section><h2>How good it is</h2><div id="good"></div></section>
 <section><h2>What happened</h2><ol id="said" role="log" aria-live="polite"
 aria-label="What happened" tabindex="0"></ol></section>
 <section><h2>Signals</h2><div id="signals"></div></section>
-<section><h2>Coefficients</h2><div id="coefficients"></div></section>
-<section><h2>Times and counts</h2><div id="facts"></div><div id="thrusters"></div></section>
+<details class="section"><summary>Learners</summary><div id="learners"></div></details>
+<details class="section"><summary>Coefficients</summary><div id="coefficients"></div></details>
+<details class="section"><summary>Times and counts</summary><div id="facts"></div></details>
 </div>
 )",
-                          chart::kLiveScript);
+      chart::kLiveScript);
 }
 
 }  // namespace
@@ -63,7 +68,7 @@ Page::Page(const live::Configuration& configuration, live::Requests& requests)
                .feed = feed_,
                .requests = requests,
                .access = access_,
-               .page = page_html(configuration.plan)}) {}
+               .page = page_html(configuration)}) {}
 
 std::string Page::address() const {
   std::string host = endpoint_.host;

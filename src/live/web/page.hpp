@@ -26,6 +26,7 @@ class Page final : public live::Output {
   void learned(const live::LearnedSample& sample) override { feed_.add(sample); }
   void health(const live::Health& health) override { feed_.add(health); }
   void event(const std::string& line) override { feed_.add(line); }
+  void ended() override { feed_.end(); }
 
  private:
   live::Endpoint endpoint_;

@@ -193,11 +193,16 @@ Server::Http::Http(const live::Endpoint& endpoint, const std::string& field, Par
 Server::Http::~Http() {
   stops_ = true;
   thread_.join();
-  for (const Guest& guest : guests_) {
-    if (guest.stream) {
-      guest.stream->end();  // MHD_stop_daemon requires a resumed connection
+  const auto begin = Clock::now();
+  const auto is_sent = [](const Guest& one) { return !one.stream || one.stream->has_sent_all(); };
+  do {  // MHD_stop_daemon requires resumed connections
+    for (const Guest& guest : guests_) {
+      if (guest.stream) {
+        guest.stream->end();
+      }
     }
-  }
+    ::MHD_run_wait(daemon_, static_cast<int>(kTuning.between_events.count()));
+  } while (!std::ranges::all_of(guests_, is_sent) && Clock::now() - begin < kTuning.farewell);
   ::MHD_run(daemon_);
   ::MHD_stop_daemon(daemon_);
 }

@@ -80,6 +80,14 @@ void Figure::make_square() {
   parts_->spec["square"] = true;
 }
 
+void Figure::begin_at(Extent window) {
+  parts_->spec["start"] = {window.low, window.high};
+}
+
+void Figure::errors_below(const std::string& a, const std::string& b, const std::string& label) {
+  parts_->spec["errors"] = {{"of", a}, {"from", b}, {"label", shortened(label, kLongestText)}};
+}
+
 json* Figure::Parts::add(const char* kind, std::span<const Point> points, std::size_t style,
                          const std::string& name) {
   std::vector<Point> kept;

@@ -52,7 +52,12 @@ class Figure {
 
   /// Figures of one group show the same range of x and the same cursor.
   void link(const std::string& group);
-  void make_square();  ///< As high as wide.
+  void make_square();            ///< As high as wide.
+  void begin_at(Extent window);  ///< What of x the figure, and its group, show at first.
+
+  /// A low figure below: the line `a` less the line `b`, by their names, with the band around 0.
+  /// `label`: its y axis, with unit. Requires both lines and one band, all of the same x.
+  void errors_below(const std::string& a, const std::string& b, const std::string& label);
 
   // Series: x ascending; points without a finite x are left out. Named series appear in the legend,
   // which can hide them.

@@ -174,6 +174,7 @@ const kelpie = (() => {
       const before = windows.get(this.group);
       const sawAll = before && this.whole?.every((end, i) => end === before[i]);
       this.whole = range ?? this.widened(xs[0], xs[xs.length - 1]);
+      if (this.description.start && !before) windows.set(this.group, this.description.start);
       this.plot ??= new uPlot(this.options(), this.table.map((column) => column.slice(0, 2)), this.frame);
       if (sawAll) windows.set(this.group, this.whole);
       this.show(windows.get(this.group) ?? this.whole);
@@ -581,19 +582,50 @@ const kelpie = (() => {
 
   // ---------------------------------------------------------------- a page of figures
 
+  // A figure of errors from the columns of the figure above: one line less another, and the interval.
+  function errorsOf({ series, errors, ...description }, columns) {
+    const find = (name) => series.find((one) => one.kind === "line" && one.name === name);
+    const [of, from] = [find(errors.of), find(errors.from)];
+    const band = series.find((one) => one.kind === "band");
+    if (!of || !from) return null;
+    const zeros = columns[of.y].map(() => 0);
+    const error = columns[of.y].map((y, i) =>
+      y === null || columns[from.y][i] === null ? null : y - columns[from.y][i]);
+    const [zero, at] = [columns.length, columns.length + 1];
+    const label = `${errors.of} less ${errors.from}`;
+    return [{ ...description, label: `${description.label} ${label}.`, marks: [], height: 150,
+      y: { label: errors.label }, guides: [],
+      series: [...(band ? [{ ...band, y: zero }] : []),
+        { kind: "line", name: label, style: 0, x: of.x, y: at }] }, [...columns, zeros, error]];
+  }
+
   async function start(parent) {
     const description = JSON.parse(parent.querySelector("script").textContent);
     const columns = await unpack(description.columns, description.data);
     parent.querySelector(".still").hidden = true;
-    const figure = new Figure(parent.querySelector(".plot"), description, columns);
-    new IntersectionObserver((entries) => {
-      figure.visible = entries.some((entry) => entry.isIntersecting);
-      if (figure.visible) figure.follow();
-    }, { rootMargin: "100px" }).observe(parent);
+    const plot = parent.querySelector(".plot");
+    const below = description.errors ? errorsOf(description, columns) : null;
+    for (const [what, numbers] of [[description, columns], ...(below ? [below] : [])]) {
+      const figure = new Figure(element("div", {}, plot), what, numbers);
+      new IntersectionObserver((entries) => {
+        figure.visible = entries.some((entry) => entry.isIntersecting);
+        if (figure.visible) figure.follow();
+      }, { rootMargin: "100px" }).observe(figure.frame);
+    }
     performance.mark("kelpie-figure");
   }
 
-  function redrawAll() { for (const figure of figures) figure.redraw(); }
+  function redrawAll(within = document) {
+    for (const figure of figures) if (within.contains(figure.frame)) figure.redraw();
+  }
+
+  // A link into a folded part opens it; figures there get their width then.
+  function openTarget() {
+    const target = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
+    if (!target) return;
+    for (let one = target; one; one = one.parentElement) if (one.tagName === "DETAILS") one.open = true;
+    target.scrollIntoView();
+  }
 
   // One figure after the other from the top, so that the first is there at once.
   async function startPage() {
@@ -603,7 +635,9 @@ const kelpie = (() => {
     };
     addEventListener("beforeprint", () => printing(true));
     addEventListener("afterprint", () => printing(false));
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => redrawAll());
+    addEventListener("hashchange", openTarget);
+    document.addEventListener("toggle", (event) => redrawAll(event.target), true);
     for (const parent of document.querySelectorAll("figure.chart")) {
       await start(parent);
       await new Promise((done) => setTimeout(done));
@@ -613,6 +647,7 @@ const kelpie = (() => {
       if (document.body.clientWidth !== width) redrawAll();
       width = document.body.clientWidth;
     }).observe(document.body);
+    openTarget();
     performance.mark("kelpie-all");
   }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "chart/page_assets.hpp"
 #include "chart/wording.hpp"
@@ -30,10 +31,13 @@ std::string lines_of(const std::string& cell) {
   return join_text(lines, "<br/>");
 }
 
-std::string row_of(const std::vector<std::string>& cells, std::string_view tag) {
+std::string row_of(const std::vector<std::string>& cells, std::string_view tag,
+                   std::span<const std::size_t> left) {
   std::string text;
-  for (const std::string& cell : cells) {
-    text += fmt::format("<{0}>{1}</{0}>", tag, lines_of(cell));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool is_left = i > 0 && std::ranges::find(left, i) != left.end();  // the first always is
+    text +=
+        fmt::format("<{0}{1}>{2}</{0}>", tag, is_left ? " class=\"left\"" : "", lines_of(cells[i]));
   }
   return "<tr>" + text + "</tr>\n";
 }
@@ -61,11 +65,21 @@ std::string html_page(const std::string& title, const std::string& opening,
                       const std::vector<Section>& sections) {
   std::string links;
   std::string body;
+  bool has_folded = false;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (!sections[i].body.empty()) {
-      links += fmt::format("<a href=\"#s{}\">{}</a>\n", i, escape_markup(sections[i].title));
-      body += fmt::format("<section id=\"s{}\">\n{}{}</section>\n", i,
-                          heading(2, sections[i].title), sections[i].body);
+      const auto& [name, html, folded] = sections[i];
+      if (!folded || !has_folded) {  // the folded sections are their own table of contents
+        links +=
+            fmt::format("<a href=\"#s{}\">{}</a>\n", i, folded ? "Details" : escape_markup(name));
+      }
+      has_folded = has_folded || folded;
+      body +=
+          folded ? fmt::format(
+                       "<details class=\"section\" id=\"s{}\">\n<summary>{}</summary>\n"
+                       "{}</details>\n",
+                       i, escape_markup(name), html)
+                 : fmt::format("<section id=\"s{}\">\n{}{}</section>\n", i, heading(2, name), html);
     }
   }
   return whole_page(title,
@@ -96,6 +110,23 @@ std::string panels(const std::vector<std::string>& figures) {
   return "<div class=\"panels\">\n" + text + "</div>\n";
 }
 
+std::string columns(const std::string& left, const std::string& right) {
+  return "<div class=\"columns\">\n<div>\n" + left + "</div>\n<div>\n" + right + "</div>\n</div>\n";
+}
+
+std::string command_lines(const Facts& commands) {
+  std::string items;
+  for (const auto& [command, purpose] : commands) {
+    items += "<li><div class=\"scroll\" tabindex=\"0\"><code>" + escape_markup(command) +
+             "</code></div> " + escape_markup(purpose) + "</li>\n";
+  }
+  return items.empty() ? "" : "<ul class=\"next\">\n" + items + "</ul>\n";
+}
+
+std::string folded(const std::string& summary, const std::string& html) {
+  return "<details><summary>" + escape_markup(summary) + "</summary>\n" + html + "</details>\n";
+}
+
 std::string facts_table(const Facts& facts) {
   std::string rows;
   for (const auto& [name, value] : facts) {
@@ -107,15 +138,41 @@ std::string facts_table(const Facts& facts) {
 
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& rows,
-                       std::string_view css_class) {
+                       std::string_view css_class, std::span<const std::size_t> left) {
   std::string body;
   for (const std::vector<std::string>& cells : rows) {
-    body += row_of(cells, "td");
+    body += row_of(cells, "td", left);
   }
   return fmt::format(
       "<div class=\"scroll\" tabindex=\"0\">\n<table class=\"{}\">\n<thead>{}</thead>\n<tbody>\n{}"
       "</tbody>\n</table>\n</div>\n",
-      css_class, row_of(head, "th"), body);
+      css_class, row_of(head, "th", left), body);
+}
+
+std::string interval_table(const std::vector<IntervalRow>& rows) {
+  std::string body;
+  for (const IntervalRow& row : rows) {
+    // In % of the bar's length; the value itself is in its middle.
+    const auto place = [&](double value) {
+      return std::clamp(50.0 * value / row.value, 0.0, 100.0);
+    };
+    const auto [from, to] = std::minmax({place(row.low), place(row.high)});
+    const bool is_known = row.value != 0.0 && std::isfinite(row.low) && std::isfinite(row.high);
+    const std::string bar =
+        is_known
+            ? fmt::format("<span class=\"bar\"><i style=\"left:{:.1f}%;width:{:.1f}%\"></i></span>",
+                          from, std::max(to - from, 1.0))
+            : "";
+    body += fmt::format(
+        "<tr><th scope=\"row\" dir=\"auto\">{}</th><td>{}</td><td>{}</td><td "
+        "class=\"left\">{}</td></tr>\n",
+        escape_markup(row.name), escape_markup(row.text), bar, escape_markup(row.note));
+  }
+  return "<div class=\"scroll\" tabindex=\"0\">\n<table class=\"intervals\">\n<thead><tr><th></th>"
+         "<th>value</th><th class=\"left\">90 % interval, from 0 to twice the "
+         "value</th><th></th></tr>"
+         "</thead>\n<tbody>\n" +
+         body + "</tbody>\n</table>\n</div>\n";
 }
 
 std::string html_table(const TextTable& table) {
@@ -123,7 +180,7 @@ std::string html_table(const TextTable& table) {
     return "";
   }
   const bool words = table.left.size() == table.head.size();
-  std::string text = html_table(table.head, table.rows, words ? "words" : "");
+  std::string text = html_table(table.head, table.rows, words ? "words" : "", table.left);
   for (const std::string& note : table.notes) {
     text += paragraph("note", note);
   }

@@ -3,8 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
+
+#include "core/text.hpp"
 
 namespace kelpie::chart {
 namespace {
@@ -161,6 +166,58 @@ std::string duration(double microseconds) {
                      seconds        ? "s"
                      : milliseconds ? "ms"
                                     : "µs");
+}
+
+std::string list_text(const std::vector<std::string>& parts) {
+  const std::span<const std::string> all(parts);
+  return parts.size() < 2 ? join_text(all, "")
+                          : join_text(all.first(all.size() - 1), ", ") + " and " + parts.back();
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 10> kRaised{"⁰", "", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+
+bool is_digit(char letter) {
+  return letter >= '0' && letter <= '9';
+}
+
+// "m^2/(rad s)" as "m²/(rad s)".
+std::string with_raised_digits(std::string_view unit) {
+  std::string text;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const bool ends = i + 2 >= unit.size() || (!is_digit(unit[i + 2]) && unit[i + 2] != '.');
+    if (unit[i] == '^' && i + 1 < unit.size() && is_digit(unit[i + 1]) && ends) {
+      text += kRaised[static_cast<std::size_t>(unit[++i] - '0')];
+    } else {
+      text += unit[i];
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string unit_text(std::string_view unit) {
+  std::string above;
+  std::string below;
+  bool several = false;
+  for (const std::string& power : split_text(std::string(unit), ' ')) {
+    const std::size_t sign = std::min(power.find('^'), power.size());
+    std::string_view exponent = std::string_view(power).substr(std::min(sign + 1, power.size()));
+    const bool divides = exponent.starts_with('-');
+    exponent.remove_prefix(divides ? 1 : 0);
+    const bool is_raised = exponent.size() == 1 && is_digit(exponent[0]);
+    if (sign == 0 || (sign < power.size() && !is_raised) || power.find('/') != power.npos) {
+      return with_raised_digits(unit);
+    }
+    std::string& side = divides ? below : above;
+    several = several || (divides && !below.empty());
+    side += (side.empty() ? "" : "·") + power.substr(0, sign);
+    side += is_raised ? kRaised[static_cast<std::size_t>(exponent[0] - '0')] : "";
+  }
+  const std::string under = several ? "(" + below + ")" : below;
+  return below.empty() ? above : (above.empty() ? "1" : above) + "/" + under;
 }
 
 std::string megabytes(std::size_t bytes) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kelpie::chart {
 
@@ -45,6 +46,12 @@ std::string time_text(double time_s);
 /// A time given in microseconds, in a suitable unit: "9.4 µs", "301 µs", "3.8 ms",
 /// "1.2 s"; "–" for NaN and infinities.
 std::string duration(double microseconds);
+
+/// "a, b and c".
+std::string list_text(const std::vector<std::string>& parts);
+
+/// A unit as people write it: "m/s²" for "m s^-2", "N·m·s" for "N m s"; other text as it is.
+std::string unit_text(std::string_view unit);
 
 /// "13.2 MB" (a million bytes each).
 std::string megabytes(std::size_t bytes);

@@ -183,17 +183,26 @@ study::StreamResult learn_with_progress(const LearnArguments& options, const stu
   }
 }
 
+format::ColumnUnits unit_texts(const log::Dataset& data) {
+  format::ColumnUnits units;
+  for (const auto& [column, unit] : data.units) {
+    units.emplace(column, unit.text());
+  }
+  return units;
+}
+
 // Returns whether a model is among the results.
 bool write_results(const fs::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model, const std::vector<format::LearnedLog>& learned,
-                   const std::string& draft) {
+                   const std::string& draft, const format::ColumnUnits& units,
+                   const std::vector<report::NextStep>& next) {
   file::FileSet files{{"result.json", format::result_json(result)},
-                      {"report.html", report::report_html(result)},
+                      {"report.html", report::report_html(result, next)},
                       {"model.json", std::nullopt}};
   if (model.ready()) {
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
-    const std::string text = format::model_json(trained, learned);
+    const std::string text = format::model_json(trained, learned, units);
     warn_unless_readable("model.json", [&] {
       format::parse_model_json(text, "model.json");
       files["model.json"] = text;
@@ -244,15 +253,13 @@ void say_files(const fs::path& folder, bool has_model, bool ready, bool has_draf
   }
 }
 
-// The commands that a user of a new model needs next.
-void say_next(const LearnArguments& options, const fs::path& folder, bool has_model) {
-  if (has_model && !options.verbose) {
-    const std::string model = (folder / "model.json").string();
-    say("next:   kelpie rollout {} --model {}   (how the error grows in open loop)\n"
-        "        kelpie predict LOG --model {}\n"
-        "        kelpie learn … --verbose   (members, intervals, coefficients, solver)\n",
-        options.log.source.path, model, model);
+void say_next(const std::vector<report::NextStep>& next) {
+  std::string before = "next:   ";
+  for (const report::NextStep& step : next) {
+    say("{}{}   ({})\n", before, step.command, step.purpose);
+    before = "        ";
   }
+  say("{}kelpie learn … --verbose   (members, intervals, coefficients, solver)\n", before);
 }
 
 void learn(const LearnArguments& options) {
@@ -285,16 +292,23 @@ void learn(const LearnArguments& options) {
   DynamicsModel model = first_model(options, from, plan, !earlier.model.empty());
   const std::vector<format::LearnedLog> learned = all_learned(options, log.learned);
   const study::StreamResult result = learn_with_progress(options, plan, model, earlier, identity);
+  std::vector<report::NextStep> next;
+  if (model.ready()) {
+    next = report::after_learning(options.log.source.path, (folder.path() / "model.json").string());
+  }
   const bool has_model =
       write_results(folder.path(), result, model,
-                    result.interrupted ? std::vector<format::LearnedLog>{} : learned, log.draft);
+                    result.interrupted ? std::vector<format::LearnedLog>{} : learned, log.draft,
+                    unit_texts(plan.data), next);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
   }
   if (!options.quiet) {
     say("{}\n", options.verbose ? report::result_table(result) : report::verdict_text(result));
     say_files(folder.path(), has_model, model.ready(), !log.draft.empty());
-    say_next(options, folder.path(), has_model);
+    if (has_model && !options.verbose) {
+      say_next(next);
+    }
   }
 }
 

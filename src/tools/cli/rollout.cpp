@@ -113,7 +113,15 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
   result.stretches = stretches.size();
   result.held = study.rollout.between == CommandPath::held;
   result.states = state_names(model, loop);
-  result.units.assign(result.states.size(), "");
+  // The log's own where it has any: those of the model are of the log that was learned.
+  const format::ColumnUnits learned = format::read_units(options.model);
+  for (const std::string& state : result.states) {
+    const auto own = data.units.find(state);
+    const auto known = learned.find(state);
+    result.units.push_back(own != data.units.end()  ? own->second.text()
+                           : known != learned.end() ? known->second
+                                                    : "");
+  }
 
   const std::vector<study::OpenLoopContender> contenders =
       study::open_loop_contenders(model, loop, data, split);

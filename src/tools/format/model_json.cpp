@@ -13,6 +13,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "kelpie/motion/unit.hpp"
 #include "model/snapshot.hpp"
 
 namespace kelpie::format {
@@ -201,9 +202,25 @@ std::string old_terms(std::span<const std::string> inputs) {
   return named == 0 ? "none" : named == 6 ? "6dof" : "fossen:" + std::to_string(named);
 }
 
+// A unit that cannot be read is named with its column.
+ColumnUnits units_in(const JsonNode& node, const Json& json) {
+  node.require(json.is_object(), "has to be an object of columns and units");
+  ColumnUnits units;
+  for (const auto& [column, unit] : json.items()) {
+    units[column] = node[column].text();
+    try {
+      static_cast<void>(Unit::parse(units[column]));
+    } catch (const InputError& error) {
+      node[column].require(false, error.what());
+    }
+  }
+  return units;
+}
+
 }  // namespace
 
-std::string model_json(const TrainedModel& model, std::span<const LearnedLog> learned) {
+std::string model_json(const TrainedModel& model, std::span<const LearnedLog> learned,
+                       const ColumnUnits& units) {
   Json json{{"format", kModelFormat},
             {"version", kModelVersion},
             {"inputs", model.input_names},
@@ -213,6 +230,9 @@ std::string model_json(const TrainedModel& model, std::span<const LearnedLog> le
   if (!learned.empty()) {
     json["learned"] = learned_json(learned);
   }
+  if (!units.empty()) {
+    json["units"] = units;
+  }
   return file::json_text(json, 1);
 }
 
@@ -221,8 +241,9 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
   const JsonNode root(json, source, "");
   const bool old = root["version"].json() == kOldVersion;
   const bool without_attitude = root["version"].json() == kWithoutAttitude;
-  root.require_format(kModelFormat,
-                      old ? kOldVersion : without_attitude ? kWithoutAttitude : kModelVersion);
+  root.require_format(kModelFormat, old                ? kOldVersion
+                                    : without_attitude ? kWithoutAttitude
+                                                       : kModelVersion);
   TrainedModel model;
   model.input_names = root["inputs"].names(kMostInputs);
   const std::vector<JsonNode> axes = root["axes"].items();
@@ -256,13 +277,29 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
   if (json.contains("learned")) {
     static_cast<void>(read_learned(root["learned"]));  // only so that what is wrong is named
   }
+  if (json.contains("units")) {
+    static_cast<void>(units_in(root["units"], json["units"]));
+  }
   return model;
 }
 
+namespace {
+
+std::string content_of(const std::filesystem::path& file) {
+  return file::read_content(file, "a model.json as `kelpie learn` writes it",
+                            file::kTuning.document_bytes);
+}
+
+}  // namespace
+
+ColumnUnits read_units(const std::filesystem::path& file) {
+  const Json json = file::parse_json(content_of(file), file.string());
+  const JsonNode root(json, file.string(), "");
+  return json.contains("units") ? units_in(root["units"], json["units"]) : ColumnUnits{};
+}
+
 TrainedModel read_model(const std::filesystem::path& file) {
-  return parse_model_json(file::read_content(file, "a model.json as `kelpie learn` writes it",
-                                             file::kTuning.document_bytes),
-                          file.string());
+  return parse_model_json(content_of(file), file.string());
 }
 
 }  // namespace kelpie::format

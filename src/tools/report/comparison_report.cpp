@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "report/provenance.hpp"
 #include "report/recommendation.hpp"
@@ -33,7 +35,102 @@ bool has_r2(const Contest& contest, const ComparedR2& r2) {
   });
 }
 
+// What is not shown breaks the series.
+double inside(double r2, chart::Extent range) {
+  return r2 < range.low ? std::nan("") : r2;
+}
+
+// Where the better half of learners and least squares lies, and some of the range below: what is
+// far below would press all others together.
+chart::Extent shown_range(const study::Comparison& comparison, const ComparedR2& r2) {
+  std::vector<double> values;
+  for (const Contest& contest : comparison.contests) {
+    const bool is_simple =
+        contest.kind == ContenderKind::mean || contest.kind == ContenderKind::last_value;
+    for (const study::AxisResult& axis : contest.stream.axes) {
+      if (!is_simple && axis.*r2.value >= kTuning.lowest_r2) {
+        values.push_back(axis.*r2.value);
+      }
+    }
+  }
+  if (values.empty()) {
+    return {0.0, 1.0};
+  }
+  const auto [lowest, high] = chart::range_of(values);
+  const double middle = quantile(values, 0.5);
+  const double low = std::max(lowest, middle - kTuning.shown_below * (high - middle));
+  const double room = 0.1 * std::max(high - low, kTuning.clear_r2);
+  return {std::max(low - room, kTuning.lowest_r2), std::min(high + room, 1.0 + room)};
+}
+
+// A contender by its mean use over the axes: what is worse than the mean is of no use, however
+// much.
+struct Ranked {
+  const Contest* contest = nullptr;
+  double mean = 0.0;
+};
+
+// The best first; contenders without R² are left out.
+std::vector<Ranked> ranking(const study::Comparison& comparison) {
+  std::vector<Ranked> ranked;
+  for (const Contest& contest : comparison.contests) {
+    double sum = 0.0;
+    for (const study::AxisResult& axis : contest.stream.axes) {
+      sum += std::isfinite(axis.r2_final) ? std::max(axis.r2_final, 0.0) : 0.0;
+    }
+    if (has_r2(contest, kHeldOutR2)) {
+      ranked.push_back({&contest, sum / static_cast<double>(contest.stream.axes.size())});
+    }
+  }
+  std::ranges::stable_sort(ranked, std::greater<>{}, &Ranked::mean);
+  return ranked;
+}
+
+// "--set adapt=none" for a variant.
+std::string how_to_use(const Contest& contest) {
+  return contest.kind == ContenderKind::variant ? "--set " + contest.name : contest.name;
+}
+
 }  // namespace
+
+std::string comparison_verdict(const study::Comparison& comparison) {
+  const std::vector<Ranked> ranked = ranking(comparison);
+  const auto kelpie = std::ranges::find(ranked, ContenderKind::kelpie,
+                                        [](const Ranked& one) { return one.contest->kind; });
+  if (kelpie == ranked.end()) {
+    return "kelpie has no R² on held-out rows, so there is nothing to compare.";
+  }
+  const Ranked& best = ranked.front();
+  if (best.mean <= kTuning.clear_r2) {
+    return "Nothing tried predicts better than the mean of the held-out rows.";
+  }
+  if (best.mean > kelpie->mean + kTuning.clear_r2) {
+    return fmt::format("{} is better than kelpie as it is, by {} of R² in the mean of the axes.",
+                       how_to_use(*best.contest), chart::decimal(best.mean - kelpie->mean));
+  }
+  return fmt::format("Keep kelpie as it is: nothing tried is better by more than {} of R².",
+                     kTuning.clear_r2);
+}
+
+chart::TextTable ranked_view(const study::Comparison& comparison) {
+  chart::TextTable table{"Ranked by R² on held-out rows", {"", "mean of the axes"}, {}};
+  for (const study::AxisResult& axis : comparison.contests.front().stream.axes) {
+    table.head.push_back(chart::shortened(axis.name, chart::kLongestName));
+  }
+  table.head.emplace_back("behind the best");
+  const std::vector<Ranked> ranked = ranking(comparison);
+  for (const auto& [contest, mean] : ranked) {
+    std::vector<std::string>& row =
+        table.rows.emplace_back(std::vector{contest->name, chart::decimal(mean)});
+    for (const study::AxisResult& axis : contest->stream.axes) {
+      row.push_back(chart::decimal(axis.r2_final));
+    }
+    row.push_back(contest == ranked.front().contest ? "–"
+                                                    : chart::decimal(ranked.front().mean - mean));
+  }
+  table.notes = {"In the mean, an axis worse than the mean of its rows counts 0."};
+  return table;
+}
 
 chart::TextTable comparison_view(const study::Comparison& comparison, const ComparedR2& r2) {
   chart::TextTable table{std::string(r2.title), {"axis"}, {}};
@@ -78,15 +175,14 @@ std::string comparison_figure(const study::Comparison& comparison, const Compare
   for (const study::AxisResult& axis : axes) {
     places.names.push_back(chart::shortened(axis.name, kLongestPlace));
   }
-  double low = 0.9;
+  const chart::Extent range = shown_range(comparison, r2);
   bool clipped = false;
   for (const Contest& contest : comparison.contests) {
     for (const study::AxisResult& axis : contest.stream.axes) {
-      low = std::fmin(low, std::floor(20.0 * (axis.*r2.value)) / 20.0);
-      clipped = clipped || axis.*r2.value < kTuning.lowest_r2;
+      clipped = clipped || axis.*r2.value < range.low;
     }
   }
-  chart::Figure figure(places, {"R²", chart::Extent{std::max(low, kTuning.lowest_r2), 1.02}},
+  chart::Figure figure(places, {"R²", range},
                        std::string(r2.title) + ", all contenders, axis by axis");
   const auto contests = static_cast<double>(comparison.contests.size());
   for (std::size_t i = 0; i < comparison.contests.size(); ++i) {
@@ -94,15 +190,15 @@ std::string comparison_figure(const study::Comparison& comparison, const Compare
     const double beside = 0.7 * ((static_cast<double>(i) + 0.5) / contests - 0.5);
     std::vector<chart::Point> points;
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      points.push_back(
-          {static_cast<double>(axis) + beside, comparison.contests[i].stream.axes[axis].*r2.value});
+      points.push_back({static_cast<double>(axis) + beside,
+                        inside(comparison.contests[i].stream.axes[axis].*r2.value, range)});
     }
     figure.markers(points, i, comparison.contests[i].name);
   }
   return figure.html(
       std::string("1 is perfect, 0 is no better than always predicting the mean of the rows "
                   "judged.") +
-      (clipped ? " What lies below −0.2 is in the table alone." : ""));
+      (clipped ? fmt::format(" What lies below {:.3g} is in the table alone.", range.low) : ""));
 }
 
 std::string contenders_figure(const study::Comparison& comparison, std::size_t axis) {
@@ -130,26 +226,34 @@ std::string comparison_table(const study::Comparison& comparison) {
 std::string comparison_html(const study::Comparison& comparison) {
   const study::StreamResult& kelpie = comparison.contests.front().stream;
   const std::string log = std::filesystem::path(kelpie.source).filename().string();
-  const std::string title = "kelpie beside simpler models on " + log;
-  std::string opening = chart::heading(1, title);
+  std::string opening = chart::paragraph("over", "kelpie beside simpler models on " + log) +
+                        chart::heading(1, comparison_verdict(comparison)) +
+                        chart::html_table(ranked_view(comparison));
+  std::string advice;
   for (const std::string& paragraph : recommendation(comparison)) {
-    opening += chart::paragraph("lead", paragraph);
+    advice += chart::paragraph("", paragraph);
   }
-  opening += chart::paragraph("note", contenders_note(comparison));
-  const auto section = [&](const ComparedR2& r2) {
-    return comparison_figure(comparison, r2) + chart::html_table(comparison_view(comparison, r2));
+  advice += chart::paragraph("note", contenders_note(comparison));
+  const auto figure = [&](const ComparedR2& r2) {
+    return chart::heading(3, r2.title) + comparison_figure(comparison, r2);
   };
-  std::string over_time;
+  const auto table = [&](const ComparedR2& r2) {
+    return chart::heading(3, r2.title) + chart::html_table(comparison_view(comparison, r2));
+  };
+  std::vector<std::string> over_time;
   for (std::size_t axis = 0; axis < kelpie.axes.size(); ++axis) {
-    over_time += chart::heading(3, kelpie.axes[axis].name) + contenders_figure(comparison, axis);
+    over_time.push_back(chart::heading(3, kelpie.axes[axis].name) +
+                        contenders_figure(comparison, axis));
   }
-  return chart::html_page(title, opening,
-                          {{"At the end of the stream", section(kHeldOutR2)},
-                           {"Mean over the stream", section(kMeanR2)},
-                           {"One step ahead", section(kOneStepR2)},
-                           {"Over the stream", over_time},
-                           {"Data", data_section(kelpie)},
-                           {"Settings", settings_section(kelpie)}});
+  return chart::html_page(
+      "kelpie: compare, " + log, opening,
+      {{"Where they differ",
+        chart::panels({figure(kHeldOutR2), figure(kMeanR2), figure(kOneStepR2)})},
+       {"Axis by axis", advice},
+       {"Over the stream", chart::panels(over_time)},
+       {"All figures", table(kHeldOutR2) + table(kMeanR2) + table(kOneStepR2), true},
+       {"Data", data_section(kelpie), true},
+       {"Settings", settings_section(kelpie), true}});
 }
 
 }  // namespace kelpie::report

@@ -28,18 +28,25 @@ chart::TextTable comparison_view(const study::Comparison& comparison, const Comp
 /// The contenders and the rows of their scores, in sentences.
 std::string contenders_note(const study::Comparison& comparison);
 
-/// comparison_view() as a figure: a place per axis, a marker per contender. Ends at −0.2.
+/// comparison_view() as a figure: a place per axis, a marker per contender. Shows the range of
+/// learners and least squares, not below −0.2.
 std::string comparison_figure(const study::Comparison& comparison, const ComparedR2& r2);
 
 /// Validation R² of the contenders over the stream, of an axis.
 std::string contenders_figure(const study::Comparison& comparison, std::size_t axis);
 
-// Both require a finished comparison with kelpie as the first contest.
+// All require a finished comparison with kelpie as the first contest.
+
+/// The contender to use, in one sentence.
+std::string comparison_verdict(const study::Comparison& comparison);
+
+/// A row per contender with R² on held-out rows, the best mean of the axes first.
+chart::TextTable ranked_view(const study::Comparison& comparison);
 
 /// For a terminal: the split, the rows, R² of the contenders by axis, and the recommendation.
 std::string comparison_table(const study::Comparison& comparison);
 
-/// One page: the recommendation, figures and tables.
+/// One page: the verdict, the ranking, figures, and the recommendation axis by axis.
 std::string comparison_html(const study::Comparison& comparison);
 
 }  // namespace kelpie::report

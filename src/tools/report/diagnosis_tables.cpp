@@ -44,12 +44,19 @@ chart::TextTable change_table(const study::StreamResult& result) {
 chart::TextTable health_table(const study::StreamResult& result) {
   chart::TextTable table{
       .title = "Thrusters in the last minute",
-      .head = {"thruster", "gives", "at least", "at most"},
+      .head = {"thruster", "gives", "at least", "at most", "changed"},
       .rows = {},
-      .notes = {"Of its thrust before, with an interval of 90 % (docs/diagnosis.md)."}};
-  for (const Cause& cause : result.diagnosis.health) {
+      .notes = {"Of its thrust at the start, with an interval of 90 % (docs/diagnosis.md)."},
+      .left = {0, 4}};
+  for (const Cause& health : result.diagnosis.health) {
+    const auto& [cause, times] = study::since_the_start(health, result.diagnosis.findings);
+    std::string changed;
+    for (const double time_s : times) {
+      changed += fmt::format("{}at {:.0f} s", changed.empty() ? "" : ", ", time_s);
+    }
     table.rows.push_back({result.input_names[cause.place], per_cent(cause.size),
-                          per_cent(cause.lower), per_cent(cause.upper)});
+                          per_cent(cause.lower), per_cent(cause.upper),
+                          changed.empty() ? "–" : changed});
   }
   return table;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -21,8 +22,6 @@
 
 namespace kelpie::report {
 namespace {
-
-constexpr std::size_t kLongestTitle = 80;
 
 // One figure per axis, side by side where there is room.
 template <typename Draw>
@@ -46,52 +45,44 @@ chart::TextTable axes_table(const study::StreamResult& result, std::vector<std::
   return table;
 }
 
-std::string list_text(const std::vector<std::string>& parts) {
-  if (parts.size() < 2) {
-    return parts.empty() ? "" : parts.front();
-  }
-  const std::span<const std::string> all(parts);
-  return join_text(all.first(all.size() - 1), ", ") + " and " + parts.back();
-}
-
 std::string as_sentence(std::string text) {
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   return text.ends_with(".") || text.ends_with("?") ? text : text + ".";
 }
 
-// What the numbers mean, in sentences: axes by whether the model is of use.
-std::string verdict(const study::StreamResult& result) {
-  std::vector<std::string> useful;
-  std::vector<std::string> useless;
-  std::vector<std::string> unknown;
-  for (const study::AxisResult& axis : result.axes) {
-    const std::string name = chart::shortened(axis.name, kLongestTitle);
-    if (!std::isfinite(axis.r2_final)) {
-      unknown.push_back(name);
-    } else if (axis.r2_final < 0.0) {
-      useless.push_back(fmt::format("{} (R² {})", name, chart::decimal(axis.r2_final)));
-    } else {
-      useful.push_back(fmt::format("{:.1f} % of the variance of {}", 100.0 * axis.r2_final, name));
-    }
-  }
-  std::string text;
-  if (!useful.empty()) {
-    text += "On rows it was never shown, the model at the end of the stream explains " +
-            list_text(useful) + ". ";
-  }
-  if (!useless.empty()) {
-    text +=
-        "It predicts worse than the mean of the held-out rows would: " + list_text(useless) + ". ";
-  }
-  if (!unknown.empty()) {
-    text += "No R² was measured for " + list_text(unknown) + ". ";
-  }
-  return text;
+bool has_model(const study::StreamResult& result) {
+  return std::ranges::any_of(result.axes,
+                             [](const study::AxisResult& axis) { return axis.status.ready; });
 }
 
-std::string opening(const study::StreamResult& result) {
+// What the model was made of: the inputs by what each is taken for, and rows.
+std::string sources(const study::StreamResult& result) {
+  chart::Facts facts;
+  for (const std::string& inputs : input_lines(result)) {
+    const std::size_t colon = inputs.find(": ");
+    facts.emplace_back(inputs.substr(0, colon), inputs.substr(colon + 2));
+  }
+  facts.emplace_back("learned", fmt::format("{} rows, once each, in the order of time",
+                                            chart::grouped(result.samples_shown)));
+  facts.emplace_back(
+      "held out", fmt::format("{} rows ({})", chart::grouped(result.held_out_rows), result.split));
+  return chart::facts_table(facts);
+}
+
+std::string quality(const study::StreamResult& result) {
+  const chart::TextTable table = quality_table(result);
+  return chart::html_table(table.head, table.rows, "", table.left) +
+         chart::paragraph("note", table.title + "; 1 is perfect, 0 is no better than the mean.");
+}
+
+// The first screen: what matters most, how good the model is, and of what.
+std::string opening(const study::StreamResult& result, const std::vector<NextStep>& next) {
   const std::string log = std::filesystem::path(result.source).filename().string();
-  std::string text = chart::heading(1, "What kelpie learned from " + log);
+  const std::string news = headline(result);
+  const std::vector<std::string> warnings = warning_lines(result);
+  const bool warns = !warnings.empty();  // names of columns keep their small letters
+  std::string text = chart::paragraph("over", "Learned from " + log) +
+                     chart::heading(1, warns ? as_sentence(news) : news + ".");
   if (result.interrupted) {
     text += chart::paragraph(
         "interrupted",
@@ -99,27 +90,36 @@ std::string opening(const study::StreamResult& result) {
                     "Everything below describes that part only.",
                     chart::grouped(result.samples_shown), chart::grouped(result.training_rows)));
   }
-  text += chart::paragraph("lead", verdict(result));
-  for (const std::string& warning : warning_lines(result)) {
-    text += chart::paragraph("interrupted", as_sentence(warning));
+  for (const std::string& warning : warnings) {
+    text += warning == news ? "" : chart::paragraph("interrupted", as_sentence(warning));
   }
-  for (const std::string& change : vehicle_lines(result)) {
-    text += chart::paragraph("", as_sentence(change));
+  if (has_model(result)) {
+    const std::string words = quality_sentence(result);
+    text += words == news ? "" : chart::paragraph("lead", words + ".");
+    for (const std::string& change : vehicle_lines(result)) {
+      // Of the cause in the headline nothing is left to say.
+      const bool is_said = news.starts_with(change.substr(change.find(": ") + 2));
+      text += is_said ? "" : chart::paragraph("", as_sentence(change));
+    }
   }
-  text += chart::paragraph("note", as_sentence(join_text(input_lines(result), ". "))) +
-          chart::paragraph("note", fmt::format("{} training samples shown once, in the order of "
-                                               "time; {} rows held out ({}).",
-                                               chart::grouped(result.samples_shown),
-                                               chart::grouped(result.held_out_rows), result.split));
-  return text + chart::html_table(baseline_table(result));
+  text += chart::columns(quality(result), sources(result));
+  chart::Facts commands;
+  for (const NextStep& step : next) {
+    commands.emplace_back(step.command, step.purpose);
+  }
+  return text + (commands.empty() ? "" : chart::heading(3, "What next")) +
+         chart::command_lines(commands);
 }
 
 std::string course_section(const study::StreamResult& result, Clock clock) {
   std::string text = chart::paragraph(
       "note",
-      "Each training sample as measured, and as predicted just before it was learned. Drag across "
-      "a figure to zoom in on a time, double-click to see everything; Shift and drag pans. All "
-      "figures over time follow.");
+      fmt::format(
+          "Each sample as measured, and as predicted just before it was learned; below, the "
+          "error. Shown at first: {:.0f} s of {:.0f} s. ◂ and ▸ go on, “all” or a double-click "
+          "shows "
+          "everything, dragging zooms in.",
+          clock.first.high - clock.first.low, clock.shown.high - clock.shown.low));
   for (const study::AxisResult& axis : result.axes) {
     text += chart::heading(3, axis.name) + course_figure(axis, clock);
   }
@@ -128,15 +128,15 @@ std::string course_section(const study::StreamResult& result, Clock clock) {
 
 // Empty where nothing changed and there is nothing to say of thrusters.
 std::string diagnosis_section(const study::StreamResult& result) {
-  std::string text;
-  for (const chart::TextTable& table : {change_table(result), health_table(result)}) {
-    text += table.rows.empty() ? "" : chart::html_table(table);
-  }
-  return text;
+  const chart::TextTable changes = change_table(result);
+  const chart::TextTable health = health_table(result);
+  return changes.rows.empty() && health.rows.empty()
+             ? ""
+             : chart::columns(chart::html_tables({changes}), chart::html_tables({health}));
 }
 
 std::string accuracy_section(const study::StreamResult& result, Clock clock) {
-  std::string text =
+  const std::string text =
       r2_figure(result, clock) +
       chart::html_table(axes_table(
           result, {"axis", "R²\nat the end", "R²\nmean", "R² lowest\nafter 1,000", "R² one\nahead"},
@@ -145,29 +145,32 @@ std::string accuracy_section(const study::StreamResult& result, Clock clock) {
             return {chart::decimal(axis.r2_final), chart::decimal(axis.r2_mean),
                     chart::decimal(axis.r2_min_after_1000), chart::decimal(axis.prequential_r2)};
           })) +
+      chart::html_table(baseline_table(result)) + panels(result, scatter_figure);
+  std::string rows =
       chart::paragraph("note",
-                       "Below, held-out rows of every configuration by the model at the end of "
-                       "the stream.");
+                       "Held-out rows of every configuration by the model at the end "
+                       "of the stream.");
   for (const study::AxisResult& axis : result.axes) {
-    text += chart::heading(3, axis.name) + held_out_figure(axis, clock);
+    rows += chart::heading(3, axis.name) + held_out_figure(axis, clock);
   }
-  return text + panels(result, scatter_figure);
+  return text + chart::folded("Held-out rows over time", rows);
 }
 
 // Empty where no axis has terms.
 std::string coefficient_section(const study::StreamResult& result, Clock clock) {
-  std::string text;
+  std::vector<std::string> effects;
+  std::string folded;
   const std::vector<chart::TextTable> tables = coefficient_tables(result);
   std::size_t next = 0;
   for (const study::AxisResult& axis : result.axes) {
     if (!axis.terms.empty()) {
-      text += chart::heading(3, axis.name) + effects_figure(axis, clock) +
-              chart::html_table(tables[next++]) + "<details><summary>Each coefficient of " +
-              chart::escape_markup(name_of(axis)) + " in its own unit</summary>\n" +
-              chart::panels(coefficient_figures(axis, clock)) + "</details>\n";
+      effects.push_back(chart::heading(3, axis.name) + effects_figure(axis, clock));
+      folded += chart::folded(
+          "Each coefficient of " + name_of(axis),
+          chart::html_table(tables[next++]) + chart::panels(coefficient_figures(axis, clock)));
     }
   }
-  return text;
+  return effects.empty() ? "" : chart::panels(effects) + folded;
 }
 
 // Empty where no axis has intervals.
@@ -248,26 +251,31 @@ std::string time_section(const study::StreamResult& result) {
 
 }  // namespace
 
-std::string report_html(const study::StreamResult& result) {
+std::string report_html(const study::StreamResult& result, const std::vector<NextStep>& next) {
   const std::string log = std::filesystem::path(result.source).filename().string();
+  const chart::Section data{"Data", data_section(result), true};
+  const chart::Section settings{"Settings", settings_section(result), true};
+  if (!has_model(result)) {
+    return chart::html_page("kelpie: " + log, opening(result, next), {data, settings});
+  }
   const Clock clock = clock_of(result);
   const chart::TextTable members = member_table(result);
   const chart::TextTable actuators = actuator_table(result.alignment);
   const chart::TextTable coverage = coverage_table(result);
-  return chart::html_page("kelpie: " + log, opening(result),
-                          {{"The run", course_section(result, clock)},
-                           {"The vehicle", diagnosis_section(result)},
+  return chart::html_page("kelpie: " + log, opening(result, next),
+                          {{"The vehicle", diagnosis_section(result)},
+                           {"The run", course_section(result, clock)},
                            {"Accuracy", accuracy_section(result, clock)},
                            {"Coefficients", coefficient_section(result, clock)},
-                           {actuators.title, chart::html_table(actuators)},
-                           {coverage.title, interval_section(result, clock)},
-                           {"Error by novelty", novelty_section(result)},
-                           {"Nodes", node_section(result, clock)},
-                           {members.title, chart::html_table(members)},
-                           {"Solver", solver_section(result)},
-                           {"Time per update", time_section(result)},
-                           {"Data", data_section(result)},
-                           {"Settings", settings_section(result)}});
+                           {actuators.title, chart::html_table(actuators), true},
+                           {coverage.title, interval_section(result, clock), true},
+                           {"Error by novelty", novelty_section(result), true},
+                           {members.title, chart::html_table(members), true},
+                           {"Nodes", node_section(result, clock), true},
+                           {"Solver", solver_section(result), true},
+                           {"Time per update", time_section(result), true},
+                           data,
+                           settings});
 }
 
 }  // namespace kelpie::report

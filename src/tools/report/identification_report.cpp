@@ -43,6 +43,50 @@ chart::TextTable parameters_view(const study::Identification& found) {
   return table;
 }
 
+// The parameters that the log tells, as bars.
+std::string parameter_bars(const study::Identification& found) {
+  std::vector<chart::IntervalRow> rows;
+  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+    const PlanarParameter& parameter = found.fit.parameters[i];
+    if (parameter.state == ParameterState::not_told || !std::isfinite(parameter.value)) {
+      continue;
+    }
+    const double half = format::half_width90(parameter);
+    const std::string unit = format::parameter_unit(found, i);
+    const bool is_free = parameter.state == ParameterState::identified;
+    rows.push_back(
+        {chart::shortened(parameter.name, chart::kLongestName), parameter.value,
+         parameter.value - half, parameter.value + half,
+         chart::significant(parameter.value) + (unit == "1" ? "" : " " + chart::unit_text(unit)),
+         is_free ? "" : format::state_word(parameter.state)});
+  }
+  return rows.empty()
+             ? ""
+             : chart::interval_table(rows) +
+                   chart::paragraph("note",
+                                    "surge_force, sway_force, yaw_moment: a constant push, "
+                                    "as of trim, a tether or an offset of a sensor.");
+}
+
+// How far the parameters can be trusted, in one sentence.
+std::string headline(const study::Identification& found, std::size_t told) {
+  if (told == 0) {
+    return "No parameter was identified: the log does not tell the vehicle's masses, drags and "
+           "thrusts apart";
+  }
+  std::vector<std::string> good;
+  std::vector<std::string> poor;
+  for (std::size_t axis = 0; !found.held_out.times_s.empty() && axis < kPlanarAxes; ++axis) {
+    (found.held_out.r2[axis] >= kTuning.poor_r2 ? good : poor).push_back(found.targets[axis]);
+  }
+  const std::string count =
+      fmt::format("{} of {} parameters identified", told, found.fit.parameters.size());
+  return poor.empty()   ? count
+         : good.empty() ? count + ", but they predict no axis well: do not trust them"
+                        : count + "; trust those of " + chart::list_text(good) + ", not those of " +
+                              chart::list_text(poor);
+}
+
 chart::TextTable actuators_view(const study::Identification& found) {
   chart::TextTable table{"Time constants of actuators", {"command", "lag/s", "90 % interval"}, {}};
   for (const LagInterval& lag : found.lags) {
@@ -94,7 +138,7 @@ chart::TextTable correlations_view(const study::Identification& found) {
 
 std::string axis_figure(const study::Identification& found, std::size_t axis) {
   const study::HeldOutFit& held_out = found.held_out;
-  chart::Figure figure({.label = "time [s]"}, {.label = found.targets[axis]},
+  chart::Figure figure({.label = "time in s"}, {.label = found.targets[axis]},
                        "Acceleration of held-out rows, measured and by the identified vehicle");
   figure.link("time");
   const std::size_t shown = std::min(held_out.times_s.size(), kMostShown);
@@ -185,10 +229,28 @@ std::string identification_table(const study::Identification& found) {
 
 std::string identification_html(const study::Identification& found) {
   const std::string log = std::filesystem::path(found.source).filename().string();
-  const std::string title = "Parameters identified from " + log;
-  std::string opening = chart::heading(1, title);
+  const std::string bars = parameter_bars(found);
+  const auto told = static_cast<std::size_t>(
+      std::ranges::count_if(found.fit.parameters, [](const PlanarParameter& parameter) {
+        return parameter.state != ParameterState::not_told && std::isfinite(parameter.value);
+      }));
+  std::string opening = chart::paragraph("over", "Parameters identified from " + log) +
+                        chart::heading(1, headline(found, told) + ".");
   for (const std::string& remark : identification_remarks(found)) {
-    opening += chart::paragraph("lead", remark);
+    opening += chart::paragraph("", remark);
+  }
+  const chart::Section data{
+      "Data",
+      chart::facts_table(
+          {{"log", found.source},
+           {"alignment", found.alignment.empty() ? "–" : found.alignment},
+           {"split", found.split},
+           {"training rows", chart::grouped(found.training_rows)},
+           {"windows of 5 s", chart::grouped(found.fit.windows)},
+           {"misfit of the structure (1: chance)", chart::significant(found.fit.misfit)}}),
+      true};
+  if (told == 0) {
+    return chart::html_page("kelpie: identify, " + log, opening, {data});
   }
   std::string course;
   if (!found.held_out.times_s.empty()) {
@@ -198,18 +260,13 @@ std::string identification_html(const study::Identification& found) {
     }
   }
   return chart::html_page(
-      title, opening,
-      {{"Parameters", chart::html_table(parameters_view(found))},
-       {"Time constants of actuators", chart::html_table(actuators_view(found))},
+      "kelpie: identify, " + log, opening,
+      {{"Parameters",
+        bars + chart::folded("All numbers", chart::html_table(parameters_view(found)))},
        {"Held-out rows", course},
-       {"Correlations", chart::html_table(correlations_view(found))},
-       {"Data", chart::facts_table({{"log", found.source},
-                                    {"alignment", found.alignment.empty() ? "–" : found.alignment},
-                                    {"split", found.split},
-                                    {"training rows", chart::grouped(found.training_rows)},
-                                    {"windows of 5 s", chart::grouped(found.fit.windows)},
-                                    {"misfit of the structure (1: chance)",
-                                     chart::significant(found.fit.misfit)}})}});
+       {"Time constants of actuators", chart::html_table(actuators_view(found))},
+       {"Correlations", chart::html_table(correlations_view(found)), true},
+       data});
 }
 
 }  // namespace kelpie::report

@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <utility>
 
 #include "chart/figure.hpp"
 #include "chart/page.hpp"
@@ -18,50 +22,50 @@ std::string seconds_text(double seconds) {
   return fmt::format("{:g} s", seconds);
 }
 
-// "0.963 / 0.910 / 0.949".
-std::string by_state(const std::vector<double>& values) {
-  std::vector<std::string> texts;
-  texts.reserve(values.size());
-  for (const double value : values) {
-    texts.push_back(chart::decimal(value));
-  }
-  return join_text(texts, " / ");
-}
-
-chart::TextTable horizon_table(const study::OpenLoopResult& result) {
-  chart::TextTable table{
-      "R² of velocity, " + join_text(result.states, " / "), {"so long after"}, {}};
-  for (const study::HorizonScore& horizon : result.scores.front().horizons) {
-    table.head.push_back(seconds_text(horizon.seconds));
-  }
+// R² of one state: a row per contender, a column per horizon.
+chart::TextTable horizon_table(const study::OpenLoopResult& result, std::size_t state) {
+  chart::TextTable table{"R² of " + result.states[state], {"after"}, {}};
   std::vector<std::string> starts{"starts"};
   for (const study::HorizonScore& horizon : result.scores.front().horizons) {
+    table.head.push_back(seconds_text(horizon.seconds));
     starts.push_back(chart::grouped(horizon.starts));
   }
-  table.rows.push_back(starts);
   for (const study::OpenLoopScore& score : result.scores) {
-    std::vector<std::string> row{score.name};
+    std::vector<std::string>& row = table.rows.emplace_back(1, score.name);
     for (const study::HorizonScore& horizon : score.horizons) {
-      row.push_back(by_state(horizon.r2));
+      row.push_back(chart::decimal(horizon.r2[state]));
     }
-    table.rows.push_back(row);
+  }
+  table.rows.push_back(std::move(starts));
+  return table;
+}
+
+std::string unit_of(const study::OpenLoopResult& result, std::size_t state) {
+  return result.units[state].empty() ? "the log's unit" : chart::unit_text(result.units[state]);
+}
+
+// A column per state, and more.
+chart::TextTable table_by_state(const study::OpenLoopResult& result, const std::string& title,
+                                const std::string& first) {
+  chart::TextTable table{title, {first}, {}};
+  for (std::size_t state = 0; state < result.states.size(); ++state) {
+    table.head.push_back(result.states[state] + "\nin " + unit_of(result, state));
   }
   return table;
 }
 
 chart::TextTable spread_table(const study::OpenLoopResult& result) {
-  chart::TextTable table{
-      "The model's error and its spread, " + join_text(result.states, " / "),
-      {"so long after", "error, RMS (log's units)", "within the 90 % band", "left known ground"},
-      {}};
+  chart::TextTable table =
+      table_by_state(result, "The model's error (RMS) and its spread", "after");
+  for (const std::string& state : result.states) {
+    table.head.push_back(state + " within\n90 % band");
+  }
+  table.head.emplace_back("left known\nground");
   for (const study::HorizonScore& horizon : result.scores.front().horizons) {
-    std::vector<std::string> errors;
-    errors.reserve(horizon.rms.size());
-    for (const double error : horizon.rms) {
-      errors.push_back(chart::significant(error));
-    }
-    table.rows.push_back({seconds_text(horizon.seconds), join_text(errors, " / "),
-                          by_state(horizon.covered), chart::decimal(horizon.beyond)});
+    std::vector<std::string>& row = table.rows.emplace_back(1, seconds_text(horizon.seconds));
+    std::ranges::transform(horizon.rms, std::back_inserter(row), chart::significant);
+    std::ranges::transform(horizon.covered, std::back_inserter(row), chart::decimal);
+    row.push_back(chart::decimal(horizon.beyond));
   }
   return table;
 }
@@ -101,7 +105,11 @@ std::string rollout_method(const study::OpenLoopResult& result) {
 }
 
 std::vector<chart::TextTable> rollout_tables(const study::OpenLoopResult& result) {
-  std::vector<chart::TextTable> tables{horizon_table(result), spread_table(result)};
+  std::vector<chart::TextTable> tables;
+  for (std::size_t state = 0; state < result.states.size(); ++state) {
+    tables.push_back(horizon_table(result, state));
+  }
+  tables.push_back(spread_table(result));
   if (!result.scores.front().reckoning.empty()) {
     tables.push_back(reckoning_table(result));
   }
@@ -113,12 +121,77 @@ namespace {
 constexpr double kLowestDrawn = 0.5;
 constexpr double kNinetyPercent = 1.645;
 
-std::string unit_of(const study::OpenLoopResult& result, std::size_t state) {
-  return result.units[state].empty() ? "the log's unit" : result.units[state];
+constexpr double kHeadlineS = 10.0;
+
+// The longest of the horizons that have starts, at most ten seconds where one is as short.
+std::size_t headline_horizon(const study::OpenLoopResult& result) {
+  const std::vector<study::HorizonScore>& horizons = result.scores.front().horizons;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < horizons.size(); ++i) {
+    best = horizons[i].starts > 0 && horizons[i].seconds <= kHeadlineS ? i : best;
+  }
+  return best;
+}
+
+// "surge" for u, where a name is that of a body axis.
+std::string word_for(const std::string& state) {
+  constexpr std::array<std::pair<char, const char*>, 6> kWords{{{'u', "surge"},
+                                                                {'v', "sway"},
+                                                                {'w', "heave"},
+                                                                {'p', "roll rate"},
+                                                                {'q', "pitch rate"},
+                                                                {'r', "yaw rate"}}};
+  const auto found = std::ranges::find_if(
+      kWords, [&](const auto& word) { return state.size() == 1 && state.front() == word.first; });
+  return found == kWords.end() ? state : found->second;
+}
+
+std::string headline(const study::OpenLoopResult& result) {
+  const study::HorizonScore& horizon = result.scores.front().horizons[headline_horizon(result)];
+  if (horizon.starts == 0) {
+    return "No unbroken stretch of rows is as long as " + seconds_text(horizon.seconds);
+  }
+  std::vector<std::string> errors;
+  for (std::size_t state = 0; state < result.states.size(); ++state) {
+    errors.push_back(fmt::format("{} {}{:.2g}{}", word_for(result.states[state]),
+                                 state == 0 ? "is within " : "", horizon.rms[state],
+                                 result.units[state].empty() ? "" : " " + unit_of(result, state)));
+  }
+  return "After " + seconds_text(horizon.seconds) + " " + chart::list_text(errors);
+}
+
+// Who is closer to the measured velocities in every state; empty where nobody is.
+std::string closer_sentence(const study::OpenLoopResult& result) {
+  const std::size_t horizon = headline_horizon(result);
+  const std::vector<double>& own = result.scores.front().horizons[horizon].rms;
+  std::vector<std::string> closer;
+  for (const study::OpenLoopScore& score : result.scores) {
+    if (std::ranges::equal(score.horizons[horizon].rms, own, std::less<>{})) {
+      closer.push_back(score.name);
+    }
+  }
+  return closer.empty() ? "" : "Closer in every velocity: " + join_text(closer, "; ") + ".";
+}
+
+// The errors at the horizon of the headline, of every contender.
+chart::TextTable contenders_table(const study::OpenLoopResult& result) {
+  const std::size_t horizon = headline_horizon(result);
+  const study::HorizonScore& model = result.scores.front().horizons[horizon];
+  chart::TextTable table = table_by_state(result, {}, "RMS error");
+  for (const study::OpenLoopScore& score : result.scores) {
+    std::vector<std::string>& row = table.rows.emplace_back(1, score.name);
+    std::ranges::transform(score.horizons[horizon].rms, std::back_inserter(row),
+                           chart::significant);
+  }
+  table.notes = {fmt::format(
+      "Root mean square errors {} after {} starts. {:.0f} % of the rollouts left the range of rows "
+      "that the model has seen.",
+      seconds_text(model.seconds), chart::grouped(model.starts), 100.0 * model.beyond)};
+  return table;
 }
 
 std::string horizon_figure(const study::OpenLoopResult& result, std::size_t state) {
-  chart::Figure figure({"s after the start", {}, chart::ScaleKind::logarithmic},
+  chart::Figure figure({"time after the start in s", {}, chart::ScaleKind::logarithmic},
                        {"R² of " + result.states[state], chart::Extent{kLowestDrawn, 1.0}},
                        result.states[state] + ": R² of the velocity by horizon");
   bool clipped = false;
@@ -143,7 +216,7 @@ std::string example_figure(const study::OpenLoopResult& result, std::size_t stat
     velocity.push_back({path.time_s[row], path.velocity[state][row]});
     half.push_back(kNinetyPercent * path.spread[state][row]);
   }
-  chart::Figure figure({"s after the start"},
+  chart::Figure figure({"time after the start in s"},
                        {result.states[state] + " in " + unit_of(result, state)},
                        result.states[state] + ": one rollout beside what was measured");
   figure.link("rollout");
@@ -168,12 +241,16 @@ std::string rollout_html(const study::OpenLoopResult& result) {
                                                result.example_start_s)) +
               example;
   }
-  return chart::html_page(
-      "kelpie: in open loop",
-      chart::heading(1, "In open loop") + chart::paragraph("lead", rollout_method(result)),
-      {{"How good, how long", chart::panels(horizons)},
-       {"One rollout", example},
-       {"All figures", chart::html_tables(rollout_tables(result))}});
+  const std::string closer = closer_sentence(result);
+  return chart::html_page("kelpie: rollout",
+                          chart::paragraph("over", "The model rolled out by its own velocities") +
+                              chart::heading(1, headline(result) + ".") +
+                              (closer.empty() ? "" : chart::paragraph("lead", closer)) +
+                              chart::html_table(contenders_table(result)) +
+                              chart::paragraph("note", rollout_method(result)),
+                          {{"One rollout", example},
+                           {"How the error grows", chart::panels(horizons)},
+                           {"All figures", chart::html_tables(rollout_tables(result)), true}});
 }
 
 std::string rollout_table(const study::OpenLoopResult& result) {

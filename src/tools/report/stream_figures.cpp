@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -33,11 +34,97 @@ std::vector<double> steps_of(std::span<const double> times) {
   return steps;
 }
 
+// What nearly all values are in, with room: one wild value would flatten all others.
+chart::Extent usual_range(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) {
+    return {};
+  }
+  const double low = quantile(values, 0.005);
+  const double high = quantile(values, 0.995);
+  const double room = 2.0 * (high - low) + 1e-9 * std::abs(high);
+  return {low - room, high + room};
+}
+
 // From one row of the log to the next, give or take its jitter.
 double usual_step(std::span<const double> times) {
   std::vector<double> steps = steps_of(times);
   std::erase_if(steps, [](double step) { return !(step > 0.0); });
   return steps.empty() ? 0.0 : quantile(steps, 0.1);
+}
+
+// The first row of a configuration that the look before did not see, held-out rows included: the
+// vehicle often changes within a held-out block.
+double first_row(const study::AxisResult& axis, double before_s,
+                 const study::ValidationPoint& look) {
+  double first = look.time_s;
+  const auto take = [&](double time_s) {
+    first = time_s > before_s ? std::min(first, time_s) : first;
+  };
+  const study::OneStep& steps = axis.one_step;
+  for (std::size_t i = 0; i < steps.configuration.size(); ++i) {
+    if (steps.configuration[i] == look.configuration) {
+      take(steps.time_s[i]);
+    }
+  }
+  for (const study::StageEnd& stage : axis.stages) {
+    if (stage.configuration == look.configuration) {
+      std::ranges::for_each(stage.time_s, take);
+    }
+  }
+  return first;
+}
+
+// Root mean square over the rows of a window, wild values bounded.
+double motion_in(const study::OneStep& steps, chart::Extent usual, std::size_t begin,
+                 std::size_t end) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double value = std::clamp(steps.truth[i], usual.low, usual.high);
+    sum += value;
+    squares += value * value;
+  }
+  const auto count = static_cast<double>(end - begin);
+  return begin == end ? 0.0 : std::sqrt(std::max(0.0, squares / count - sum / count * sum / count));
+}
+
+// Around the last named change, most of it after the change; else the stretch of the later half in
+// which the first axis moves most. All rows where they are few.
+chart::Extent first_window(const study::StreamResult& result, chart::Extent all) {
+  const study::OneStep* const steps = result.axes.empty() ? nullptr : &result.axes.front().one_step;
+  if (steps == nullptr || steps->time_s.empty()) {
+    return all;
+  }
+  const double width =
+      std::max(kTuning.first_window_s, kTuning.first_window_rows * usual_step(steps->time_s));
+  if (!(all.high - all.low > 2.0 * width)) {
+    return all;
+  }
+  for (const Finding& finding : std::views::reverse(result.diagnosis.findings)) {
+    if (finding.state == FindingState::named) {
+      const double from =
+          std::clamp(finding.since_s - kTuning.before_change * width, all.low, all.high - width);
+      return {from, from + width};
+    }
+  }
+  const chart::Extent usual = usual_range(steps->truth);
+  const std::vector<double>& times = steps->time_s;
+  double most = -1.0;
+  double best = all.high - width;
+  for (double from = 0.5 * (all.low + all.high); from + width < all.high; from += 0.5 * width) {
+    const auto begin = std::ranges::lower_bound(times, from);
+    const auto end = std::ranges::lower_bound(times, from + width);
+    // Held-out rows leave holes: a window half empty tells less, however lively.
+    const double motion = static_cast<double>(end - begin) *
+                          motion_in(*steps, usual, static_cast<std::size_t>(begin - times.begin()),
+                                    static_cast<std::size_t>(end - times.begin()));
+    if (motion > most) {
+      most = motion;
+      best = from;
+    }
+  }
+  return {best, best + width};
 }
 
 Tally difference(const Tally& before, const Tally& after) {
@@ -69,7 +156,8 @@ Clock clock_of(const study::StreamResult& result) {
   }
   const auto [first, last] = chart::range_of(ends);
   const double origin = std::abs(first) > kLargeStamp_s ? std::floor(first) : 0.0;
-  return {origin, {first - origin, last - origin}};
+  const auto [from, to] = first_window(result, {first, last});
+  return {origin, {first - origin, last - origin}, {from - origin, to - origin}};
 }
 
 std::vector<chart::Point> over_time(Clock clock, std::span<const double> time_s,
@@ -97,12 +185,12 @@ std::vector<Event> events_of(const study::AxisResult& axis) {
   const std::vector<study::ValidationPoint>& looks = axis.validation;
   for (std::size_t i = 1; i < looks.size(); ++i) {
     if (looks[i].configuration != looks[i - 1].configuration) {
-      events.push_back(
-          {looks[i - 1].time_s, fmt::format("configuration {}", looks[i].configuration)});
+      events.push_back({first_row(axis, looks[i - 1].time_s, looks[i]),
+                        fmt::format("configuration {}", looks[i].configuration)});
     }
   }
   for (const study::ChangeFound& change : axis.changes) {
-    events.push_back({change.time_s, change.recalled > 0 ? "known again" : "change found"});
+    events.push_back({change.since_s, change.recalled > 0 ? "known again" : "change"});
   }
   std::ranges::stable_sort(events, {}, &Event::time_s);
   return events;
@@ -114,7 +202,7 @@ std::string name_of(const study::AxisResult& axis) {
 
 chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description) {
   chart::Figure figure(clock.axis(), std::move(y), description);
-  figure.link("time");
+  figure.link("stream");
   return figure;
 }
 
@@ -197,23 +285,16 @@ constexpr std::size_t kPredicted = 1;
 constexpr std::size_t kOutlier = 3;
 
 std::string unit_of(const study::AxisResult& axis) {
-  return axis.unit.empty() ? "the log's own unit" : axis.unit;
+  return axis.unit.empty() ? "the log's own unit" : chart::unit_text(axis.unit);
 }
 
-std::string label_of(const study::AxisResult& axis) {
-  return name_of(axis) + " in " + unit_of(axis);
-}
-
-// What nearly all values are in, with room: one wild value would flatten all others.
-chart::Extent usual_range(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (values.empty()) {
-    return {};
-  }
-  const double low = quantile(values, 0.005);
-  const double high = quantile(values, 0.995);
-  const double room = 2.0 * (high - low) + 1e-9 * std::abs(high);
-  return {low - room, high + room};
+// Of single samples; begins with a minute or so.
+chart::Figure figure_of_samples(Clock clock, const study::AxisResult& axis,
+                                const std::string& description) {
+  chart::Figure figure(clock.axis(), {name_of(axis) + " in " + unit_of(axis)}, description);
+  figure.link("time");
+  figure.begin_at(clock.first);
+  return figure;
 }
 
 std::size_t clip(std::vector<chart::Point>& points, chart::Extent range) {
@@ -278,14 +359,15 @@ std::string course_figure(const study::AxisResult& axis, Clock clock) {
   }
   const std::size_t clipped = clip(truth, usual) + clip(predicted, usual);
   clip(outliers, usual);
-  chart::Figure figure = figure_over_time(
-      clock, {label_of(axis)},
+  chart::Figure figure = figure_of_samples(
+      clock, axis,
       axis.name + ": every sample as measured and as predicted just before it was learned");
   figure.band(predicted, values_of(over_time(clock, steps.time_s, halves(steps))), kPredicted,
               "interval");
   figure.line(truth, kTruth, "measured");
   figure.line(predicted, kPredicted, "predicted");
   figure.markers(outliers, kOutlier, "outliers removed");
+  figure.errors_below("measured", "predicted", "error in " + unit_of(axis));
   mark_events(figure, axis, clock);
   return figure.html(clipped == 0 ? ""
                                   : chart::grouped(clipped) +
@@ -338,8 +420,8 @@ std::string r2_figure(const study::StreamResult& result, Clock clock) {
 }
 
 std::string held_out_figure(const study::AxisResult& axis, Clock clock) {
-  chart::Figure figure = figure_over_time(
-      clock, {label_of(axis)}, axis.name + ": held-out rows, true and predicted, over time");
+  chart::Figure figure =
+      figure_of_samples(clock, axis, axis.name + ": held-out rows, true and predicted, over time");
   const bool alone = scattered(axis.held_out_time_s);
   const auto add = [&](const std::vector<double>& values, std::size_t style, const char* name) {
     const std::vector<chart::Point> points = over_time(clock, axis.held_out_time_s, values);
@@ -457,7 +539,7 @@ void add_term(chart::Figure& figure, const study::AxisResult& axis, const study:
 std::string effects_figure(const study::AxisResult& axis, Clock clock) {
   const std::vector<study::TermView> shown =
       study::most_effective(study::term_views(axis), kMostTermLines);
-  const std::string unit = axis.unit.empty() ? "the target's unit" : axis.unit;
+  const std::string unit = axis.unit.empty() ? "the target's unit" : chart::unit_text(axis.unit);
   chart::Figure figure = figure_over_time(
       clock, {"effect in " + unit}, axis.name + ": effects of the physics terms over the stream");
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -478,7 +560,8 @@ std::vector<std::string> coefficient_figures(const study::AxisResult& axis, Cloc
   std::vector<std::string> figures;
   for (const study::TermView& view :
        study::most_effective(study::term_views(axis), kMostTermLines)) {
-    const std::string unit = view.term.unit.empty() ? "the log's units" : view.term.unit;
+    const std::string unit =
+        view.term.unit.empty() ? "the log's units" : chart::unit_text(view.term.unit);
     chart::Figure figure = figure_over_time(clock, {"coefficient in " + unit},
                                             axis.name + ": coefficient of " + view.term.formula);
     add_term(figure, axis, view, 1.0, clock, figures.size(), formula_of(view));

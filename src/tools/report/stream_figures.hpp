@@ -17,6 +17,7 @@ namespace kelpie::report {
 struct Clock {
   double origin_s = 0.0;
   chart::Extent shown{};  ///< from the first to the last row, since the origin
+  chart::Extent first{};  ///< a minute or so to begin with, where all rows are too many
 
   chart::PlotAxis axis() const;
   double operator()(double time_s) const { return time_s - origin_s; }
@@ -44,12 +45,12 @@ std::vector<chart::Point> over_looks(Clock clock, const study::AxisResult& axis,
 /// The name of an axis in tables and figures.
 std::string name_of(const study::AxisResult& axis);
 
-/// A figure over time; the figures of a page share window and cursor.
+/// A figure over the stream; those of a page share window and cursor.
 chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description);
 
 /// A change of the vehicle: another configuration in the log, or a detected change.
 struct Event {
-  double time_s = 0.0;
+  double time_s = 0.0;  ///< of its first row; of a detected change, when errors began to grow
   std::string name;
 };
 std::vector<Event> events_of(const study::AxisResult& axis);  ///< In the order of time.
@@ -75,10 +76,11 @@ struct TimeHistogram {
 };
 TimeHistogram histogram_of(const study::AxisResult& axis);  ///< Of every update of an axis.
 
-// Figures of a stream, as HTML. Figures over time share a window and a cursor.
+// Figures of a stream, as HTML. Figures of samples share a window and a cursor, which begins with
+// Clock::first; so do the figures over the whole stream.
 
-/// The whole run of an axis: each sample as measured and as predicted before learning, with the
-/// interval of the prediction; changes and outliers.
+/// The run of an axis: each sample as measured and as predicted before learning, with the interval
+/// of the prediction, and the errors below; changes and outliers.
 std::string course_figure(const study::AxisResult& axis, Clock clock);
 
 /// A line of r2_figure().

@@ -89,7 +89,7 @@ chart::TextTable baseline_table(const study::StreamResult& result) {
 }
 
 chart::TextTable member_table(const study::StreamResult& result) {
-  chart::TextTable table{"Who is believed", {"axis"}, {}, {std::string(kMemberNote)}};
+  chart::TextTable table{"Weights of the committee", {"axis"}, {}, {std::string(kMemberNote)}};
   for (const study::AxisResult& axis : result.axes) {
     if (axis.members.empty()) {
       continue;
@@ -142,7 +142,7 @@ chart::TextTable coverage_table(const study::StreamResult& result) {
       table.rows.push_back({row, chart::grouped(coverage.samples), percent(coverage.share),
                             percent(coverage.lowest), chart::significant(coverage.mean_width),
                             chart::significant(coverage.median_width),
-                            or_dash(chart::printable(axis.unit))});
+                            or_dash(chart::printable(chart::unit_text(axis.unit)))});
     }
   }
   return table;
@@ -154,16 +154,17 @@ std::vector<chart::TextTable> coefficient_tables(const study::StreamResult& resu
     if (axis.terms.empty()) {
       continue;
     }
-    const std::string unit = axis.unit.empty() ? "" : " in " + axis.unit;
+    const std::string unit = axis.unit.empty() ? "" : " in " + chart::unit_text(axis.unit);
     chart::TextTable table{
         axis.name + unit, {"term", "coefficient", "±", "unit", "at half", "change", "effect"}, {}};
     for (const study::TermView& view :
          study::most_effective(study::term_views(axis), kMostShownTerms)) {
-      table.rows.push_back({chart::shortened(view.term.formula, kLongestFormula),
-                            chart::significant(view.value), chart::significant(view.term.error),
-                            chart::shortened(or_dash(view.term.unit), kLongestUnit),
-                            chart::significant(view.at_half), change(view.at_half, view.value),
-                            chart::significant(view.effect)});
+      table.rows.push_back(
+          {chart::shortened(view.term.formula, kLongestFormula), chart::significant(view.value),
+           chart::significant(view.term.error),
+           chart::shortened(or_dash(chart::unit_text(view.term.unit)), kLongestUnit),
+           chart::significant(view.at_half), change(view.at_half, view.value),
+           chart::significant(view.effect)});
     }
     tables.push_back(std::move(table));
   }

@@ -53,6 +53,18 @@ double drawn(double r2) {
   return std::max(r2, kTuning.lowest_r2);
 }
 
+// The lower end of the figure, of learners and least squares: the mean would press them together.
+double lowest_drawn(const StudyView& study, const std::vector<Placed>& vehicles) {
+  double low = 0.9;
+  for (const Placed& one : vehicles) {
+    for (std::size_t i = 0; i < study.results.plan().learners.size(); ++i) {
+      low = std::fmin(low, drawn(one.axis->learners[i].r2_final.tenth));
+    }
+    low = std::fmin(low, drawn(one.axis->least_squares.tenth));
+  }
+  return low;
+}
+
 std::string vehicle_figure(const StudyView& study, const std::string& name) {
   const std::vector<Placed> vehicles = vehicles_with(study, name);
   chart::PlotAxis places{"vehicle",
@@ -60,8 +72,11 @@ std::string vehicle_figure(const StudyView& study, const std::string& name) {
   for (const Placed& one : vehicles) {
     places.names.push_back(chart::shortened(one.vehicle->name, kLongestVehicle));
   }
-  chart::Figure figure(places, {"R² of " + chart::shortened(name, chart::kLongestName), {}},
-                       "R² on held-out rows of " + name + " by vehicle and learner");
+  const double low = lowest_drawn(study, vehicles);
+  chart::Figure figure(
+      places,
+      {"R² of " + chart::shortened(name, chart::kLongestName), chart::Extent{low - 0.02, 1.02}},
+      "R² on held-out rows of " + name + " by vehicle and learner");
   const std::vector<fleet::LearnerConfig>& learners = study.results.plan().learners;
   const auto series = static_cast<double>(learners.size() + 2);
   const auto draw = [&](std::size_t style, const std::string& who, auto spread) {
@@ -70,8 +85,8 @@ std::string vehicle_figure(const StudyView& study, const std::string& name) {
     std::vector<chart::Point> tenths;
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
       const fleet::Spread& values = spread(*vehicles[i].axis);
-      medians.push_back({static_cast<double>(i) + beside, drawn(values.median)});
-      tenths.push_back({static_cast<double>(i) + beside, drawn(values.tenth)});
+      medians.push_back({static_cast<double>(i) + beside, std::max(values.median, low)});
+      tenths.push_back({static_cast<double>(i) + beside, std::max(values.tenth, low)});
     }
     figure.markers(medians, style, who);
     figure.dots(tenths, style, "");
@@ -86,7 +101,8 @@ std::string vehicle_figure(const StudyView& study, const std::string& name) {
        [](const AxisSummary& axis) -> const auto& { return axis.mean; });
   return figure.html(fmt::format(
       "At the end of the stream: medians over the runs, small dots the 10th percentile. What lies "
-      "below −0.2 is drawn there.{}",
+      "below {:.2g} is drawn there.{}",
+      low,
       study.summary.vehicles.size() > kMostVehicles
           ? fmt::format(" The {} vehicles where {} does worst.", kMostVehicles,
                         learners.front().name)
@@ -205,10 +221,13 @@ std::string study_table(const StudyView& study) {
 
 std::string study_html(const StudyView& study) {
   const std::string title = "kelpie: study " + study.results.plan().name;
-  std::string opening = chart::heading(1, title);
-  for (const std::string& sentence : study_sentences(study)) {
-    opening += chart::paragraph("lead", sentence);
+  const std::vector<std::string> sentences = study_sentences(study);
+  std::string opening =
+      chart::paragraph("over", title) + chart::heading(1, findings_headline(study));
+  for (const std::string& sentence : sentences) {
+    opening += chart::paragraph("", sentence);
   }
+  opening += if_any(vehicle_findings_view(study));
   opening += chart::paragraph("note",
                               "Each run learns one log anew, in the order of time, and is "
                               "judged on rows held out of it. " +
@@ -229,15 +248,15 @@ std::string study_html(const StudyView& study) {
             ? ""
             : if_any(gains_view(study)) +
                   if_any(changed_runs_view(study), chart::heading(3, "Runs that have lost most"))},
-       {"Learners", if_any(learners_view(study))},
-       {"Vehicles", vehicles + chart::html_tables({tenth})},
-       {"One step ahead, over the stream, intervals", more},
+       {"Vehicles", vehicles + chart::folded(tenth.title, chart::html_table(tenth))},
        {"From mission to mission",
         tested ? chart::panels(trend_figures(study)) + if_any(trends_view(study)) : ""},
-       {"What became of vehicles", if_any(findings_view(study))},
-       {"Worst runs", if_any(worst_view(study))},
+       {"Findings by mission", if_any(findings_view(study))},
        {"Failures", if_any(failures_view(study))},
-       {"The study", chart::facts_table(facts(study))}});
+       {"Learners", if_any(learners_view(study)), true},
+       {"One step ahead, over the stream, intervals", more, true},
+       {"Worst runs", if_any(worst_view(study)), true},
+       {"The study", chart::facts_table(facts(study)), true}});
 }
 
 }  // namespace kelpie::report

@@ -65,7 +65,13 @@ chart::TextTable vehicles_view(const StudyView& study, const StudyMeasure& measu
 chart::TextTable gains_view(const StudyView& study);
 chart::TextTable changed_runs_view(const StudyView& study);  ///< The largest losses.
 
-chart::TextTable trends_view(const StudyView& study);    ///< The tested trends.
+chart::TextTable trends_view(const StudyView& study);  ///< The tested trends.
+/// How many vehicles changed, in one sentence.
+std::string findings_headline(const StudyView& study);
+
+/// A row per vehicle with findings: missions with findings, and the last finding.
+chart::TextTable vehicle_findings_view(const StudyView& study);
+
 chart::TextTable findings_view(const StudyView& study);  ///< Missions with a changed vehicle.
 chart::TextTable worst_view(const StudyView& study);     ///< The worst runs of the first learner.
 chart::TextTable failures_view(const StudyView& study);  ///< Runs without a result.

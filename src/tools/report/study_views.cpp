@@ -20,6 +20,7 @@ using fleet::Spread;
 using fleet::VehicleSummary;
 
 constexpr std::size_t kMostListed = 50;
+constexpr std::size_t kMostNamed = 3;  // vehicles in a headline
 
 std::string in_lines(const std::string& name) {
   return join_text(split_text(name, ' '), "\n");
@@ -250,8 +251,47 @@ chart::TextTable trends_view(const StudyView& study) {
   return table;
 }
 
+std::string findings_headline(const StudyView& study) {
+  const std::vector<VehicleSummary>& vehicles = study.summary.vehicles;
+  std::vector<std::string> changed;
+  for (const VehicleSummary& vehicle : vehicles) {
+    if (!vehicle.findings.empty()) {
+      changed.push_back(cell_name(vehicle.name));
+    }
+  }
+  if (changed.empty()) {
+    return fmt::format("No change was found on {}.", counted(vehicles.size(), "vehicle"));
+  }
+  return changed.size() <= kMostNamed
+             ? fmt::format("Changes were found on {}.", chart::list_text(changed))
+             : fmt::format("Changes were found on {} of {}.", changed.size(),
+                           counted(vehicles.size(), "vehicle"));
+}
+
+chart::TextTable vehicle_findings_view(const StudyView& study) {
+  chart::TextTable table{
+      "Which vehicle has what", {"vehicle", "missions", "the last finding", "in"}, {}};
+  table.left = {0, 2, 3};
+  std::size_t all = 0;
+  for (const VehicleSummary& vehicle : study.summary.vehicles) {
+    if (vehicle.findings.empty()) {
+      continue;
+    }
+    ++all;
+    if (table.rows.size() < kMostListed) {
+      const fleet::MissionFindings& last = vehicle.findings.back();
+      table.rows.push_back({cell_name(vehicle.name),
+                            fmt::format("{} of {}", vehicle.findings.size(), vehicle.missions),
+                            last.findings.empty() ? "–" : last.findings.back(),
+                            study.results.missions()[last.mission].mission});
+    }
+  }
+  cut(table, all, "the first");
+  return table;
+}
+
 chart::TextTable findings_view(const StudyView& study) {
-  chart::TextTable table{"What became of vehicles", {"vehicle", "mission", "found"}, {}};
+  chart::TextTable table{"Findings by mission", {"vehicle", "mission", "found"}, {}};
   table.left = {0, 1, 2};
   std::size_t all = 0;
   for (const VehicleSummary& vehicle : study.summary.vehicles) {

@@ -14,6 +14,7 @@
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "format/settings_toml.hpp"
+#include "report/tuning.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -244,6 +245,7 @@ std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal
 namespace {
 
 constexpr double kHardlyLess = 0.005;  // of the score
+constexpr double kShownBelow = 0.1;    // of the best score, in a figure
 constexpr std::size_t kMostRows = 12;
 
 using study::TrialResult;
@@ -291,39 +293,128 @@ std::string name_of(const TrialResult& one, const study::TuneResult& result, std
   return different.empty() ? nearest : nearest + " with " + join_text(different, ", ");
 }
 
-std::string advice(const study::TuneResult& result, std::size_t axis,
-                   const std::vector<const TrialResult*>& best_first) {
+// The gain over the settings at the start on all rows, NaN where one is not judged.
+double gain_of(const study::TunedAxis& axis) {
+  return axis.all.tuned - axis.all.base;
+}
+
+bool any_gain(const study::TuneResult& result) {
+  return std::ranges::any_of(
+      result.axes, [](const study::TunedAxis& axis) { return gain_of(axis) > kTuning.clear_r2; });
+}
+
+// The gain in one sentence.
+std::string gain_sentence(const study::TuneResult& result) {
+  std::vector<std::string> gained;
+  bool judged = false;
+  for (const study::TunedAxis& axis : result.axes) {
+    judged = judged || std::isfinite(gain_of(axis));
+    if (gain_of(axis) > kTuning.clear_r2) {
+      gained.push_back(fmt::format("{} by {}", chart::shortened(axis.name, chart::kLongestName),
+                                   chart::decimal(gain_of(axis))));
+    }
+  }
+  if (!judged) {
+    return "The search ended before any settings were judged on all rows.";
+  }
+  return gained.empty() ? fmt::format(
+                              "No gain: keep the defaults. No setting tried scores higher by "
+                              "more than {}.",
+                              kTuning.clear_r2)
+                        : "Tuned settings score higher: " + chart::list_text(gained) + ".";
+}
+
+// The trial of the chosen settings on the last round; null where they were not judged there.
+const TrialResult* chosen_trial(const study::TuneResult& result, std::size_t axis) {
+  const study::TunedAxis& tuned = result.axes[axis];
+  const std::string settings = study::settings_of(result.tuned, axis);
+  for (const TrialResult* one : judged(result, tuned.name, tuned.rung)) {
+    if (one->settings == settings) {
+      return one;
+    }
+  }
+  return nullptr;
+}
+
+// The presets that score higher than the tuned settings, by the mean over the axes: the search goes
+// around the settings it started from, and these may have been a worse place than a preset.
+std::string better_presets(const study::TuneResult& result) {
+  std::vector<std::string> better;
+  for (std::size_t i = 0; i < result.references.size(); ++i) {
+    double sum = 0.0;
+    for (const study::TunedAxis& axis : result.axes) {
+      sum += axis.all.references[i] - axis.all.tuned;
+    }
+    if (sum > kTuning.clear_r2 * static_cast<double>(result.axes.size())) {
+      better.push_back(result.references[i].first);
+    }
+  }
+  return better.empty() ? ""
+                        : "Without this search a preset scores higher than the tuned settings: " +
+                              chart::list_text(better) + ".";
+}
+
+// Scores and the work of the solver before and after.
+chart::TextTable gain_table(const study::TuneResult& result) {
+  chart::TextTable table{
+      {},
+      {"axis", "start", "tuned", "gain", "least squares", "iterations\nper row", "tuned settings"},
+      {},
+      {"Score: each stretch of the log is predicted before it is learned; 1 less "
+       "the mean squared error over the variance of the target. 1 is perfect, 0 "
+       "no better than the mean. Start: the settings that the search started "
+       "from. Iterations of the solver: work and time grow with them."},
+      {0, 6}};
+  for (std::size_t i = 0; i < result.axes.size(); ++i) {
+    const study::TunedAxis& axis = result.axes[i];
+    const TrialResult* const chosen = chosen_trial(result, i);
+    table.rows.push_back({chart::shortened(axis.name, chart::kLongestName),
+                          chart::decimal(axis.all.base), chart::decimal(axis.all.tuned),
+                          chart::decimal(gain_of(axis)), chart::decimal(axis.all.least_squares),
+                          chosen == nullptr ? "–" : chart::significant(chosen->iterations_per_row),
+                          chosen == nullptr ? "–" : name_of(*chosen, result, i)});
+  }
+  return table;
+}
+
+// A candidate that hardly scores less for much less work; empty where there is none.
+std::string cheaper(const study::TuneResult& result, std::size_t axis,
+                    const std::vector<const TrialResult*>& best_first) {
   const TrialResult& best = *best_first.front();
   const TrialResult& least = *cheapest(best_first);
-  const std::string text = fmt::format(
-      "{}: best is {}, which scores {} with {} iterations of the solver per row",
-      chart::shortened(result.axes[axis].name, chart::kLongestName), name_of(best, result, axis),
-      chart::decimal(best.score), chart::significant(best.iterations_per_row));
-  return text + (&least == &best
-                     ? "; none that scores nearly as much takes less."
-                     : fmt::format("; {} scores {} with {}.", name_of(least, result, axis),
-                                   chart::decimal(least.score),
-                                   chart::significant(least.iterations_per_row)));
+  return &least == &best
+             ? ""
+             : fmt::format(
+                   "{} scores {} with {} iterations of the solver per row; the best, {} "
+                   "with {}.",
+                   name_of(least, result, axis), chart::decimal(least.score),
+                   chart::significant(least.iterations_per_row), chart::decimal(best.score),
+                   chart::significant(best.iterations_per_row));
 }
 
 std::string candidates_figure(const study::TuneResult& result, const study::TunedAxis& axis) {
+  const std::vector<const TrialResult*> best_first = judged(result, axis.name, axis.rung);
+  const double best = best_first.empty() ? 1.0 : best_first.front()->score;
+  const chart::Extent range{best - 1.05 * kShownBelow, best + 0.1 * kShownBelow};
   chart::Figure figure({"iterations of the solver per row", {}, chart::ScaleKind::logarithmic},
-                       {"score"},
+                       {"score", range},
                        axis.name + ": candidates by their score and by the solver's work");
   std::size_t given_up = 0;
-  for (std::size_t rung = 0; rung < result.rungs.size(); ++rung) {
-    std::vector<chart::Point> points;
-    for (const TrialResult* one : judged(result, axis.name, rung)) {
-      points.push_back({std::max(one->iterations_per_row, 1e-3), std::max(one->score, -0.2)});
-    }
-    std::ranges::stable_sort(points, {}, &chart::Point::x);
-    figure.markers(points, rung, "judged on " + chart::grouped(result.rungs[rung]) + " rows");
+  std::vector<chart::Point> points;
+  for (const TrialResult* one : best_first) {
+    points.push_back(
+        {std::max(one->iterations_per_row, 1e-3), std::max(one->score, best - kShownBelow)});
   }
+  std::ranges::stable_sort(points, {}, &chart::Point::x);
+  figure.markers(points, 0, "judged on " + chart::grouped(result.rungs[axis.rung]) + " rows");
   for (const TrialResult& one : result.trials) {
     given_up += one.axis == axis.name && one.given_up ? 1 : 0;
   }
-  return figure.html(fmt::format(
-      "Work and time grow together. Scores below −0.2 are drawn there. Given up: {}.", given_up));
+  return figure.html(
+      fmt::format("The candidates of the last round, on the most rows; those further than {} below "
+                  "the best are "
+                  "drawn there. Given up in all rounds: {}.",
+                  kShownBelow, given_up));
 }
 
 chart::TextTable best_table(const study::TuneResult& result, std::size_t axis,
@@ -341,35 +432,52 @@ chart::TextTable best_table(const study::TuneResult& result, std::size_t axis,
 
 std::string tune_html(const study::TuneResult& result, const study::TuneJournal::Header& header) {
   std::string opening =
-      chart::heading(1, result.logs.size() == 1 ? "Settings that learn this log best"
-                                                : "Settings that learn these logs best");
+      chart::paragraph("over", result.logs.size() == 1 ? "Settings tried on " + result.logs[0].name
+                                                       : "Settings tried on several logs") +
+      chart::heading(1, gain_sentence(result));
   if (result.interrupted) {
     opening += chart::paragraph("interrupted", "The search was interrupted: the best until then.");
   }
   if (const std::string worse = worse_text(result); !worse.empty()) {
     opening += chart::paragraph("interrupted", worse + ".");
   }
+  if (const std::string better = better_presets(result); !better.empty()) {
+    opening += chart::paragraph("interrupted", better);
+  }
+  const chart::TextTable gained = gain_table(result);
+  opening += chart::html_table(gained);
+  if (any_gain(result)) {
+    opening +=
+        chart::command_lines({{"kelpie learn LOG --config tuned.toml",
+                               "learns with the tuned settings; judge them on another log"}});
+  }
+  std::vector<std::string> figures;
   std::string candidates = chart::paragraph(
       "note",
       "A setting whose score is higher by a thousandth and that takes the solver twenty times as "
       "long is no gain: look to the left of the best.");
+  std::string tables;
   for (std::size_t i = 0; i < result.axes.size(); ++i) {
     const study::TunedAxis& axis = result.axes[i];
     const std::vector<const TrialResult*> best_first = judged(result, axis.name, axis.rung);
-    candidates += chart::heading(3, axis.name) + candidates_figure(result, axis);
+    std::string text = chart::heading(3, axis.name) + candidates_figure(result, axis);
     if (!best_first.empty()) {
-      opening += chart::paragraph("lead", advice(result, i, best_first));
+      const std::string less = cheaper(result, i, best_first);
+      text += less.empty() ? "" : chart::paragraph("", less);
       const chart::TextTable table = best_table(result, i, best_first);
-      candidates += chart::html_table(table.head, table.rows, "words");
+      tables += chart::heading(3, axis.name) + chart::html_table(table.head, table.rows, "words");
     }
+    figures.push_back(text);
   }
+  candidates += chart::panels(figures) + chart::folded("The best candidates", tables);
   study::TuneJournal::Header facts;  // without the checksum of the log's values
   std::ranges::copy_if(header, std::back_inserter(facts),
                        [](const auto& fact) { return fact.first != "values"; });
-  return chart::html_page("kelpie: tune", opening,
-                          {{"Candidates", candidates},
-                           {"Chosen settings and scores", chart::html_tables(tune_tables(result))},
-                           {"The search", chart::facts_table(facts)}});
+  return chart::html_page(
+      "kelpie: tune", opening,
+      {{"Candidates", candidates},
+       {"Chosen settings and scores", chart::html_tables(tune_tables(result)), true},
+       {"The search", chart::facts_table(facts), true}});
 }
 
 }  // namespace kelpie::report

@@ -7,7 +7,11 @@ namespace kelpie::report {
 
 /// Thresholds of verdicts and limits of figures. Chosen by hand; no measurement recorded.
 inline constexpr struct Tuning {
+  double first_window_s = 60.0;      ///< of a figure of samples, at first
+  double first_window_rows = 120;    ///< of it, at least
+  double before_change = 0.25;      ///< share of that stretch before a change in it
   double lowest_r2 = -0.2;           ///< R² below is drawn at the edge of a figure
+  double shown_below = 4.0;          ///< of a comparison, below the median, per range above it
   double clear_r2 = 0.01;            ///< smallest difference of R² that a recommendation mentions
   double clear_one_step_r2 = 0.001;  ///< the same one step ahead, where every R² is close to 1
   double very_good_r2 = 0.9;         ///< words of a verdict

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "kelpie/motion/attitude.hpp"
@@ -36,6 +35,18 @@ std::string quality(double r2) {
     return "very good";
   }
   return r2 >= kTuning.good_r2 ? "good" : r2 >= kTuning.fair_r2 ? "fair" : "weak";
+}
+
+// How good the predictions of an axis are, in words that follow "are".
+std::string quality_of(const study::AxisResult& axis) {
+  const double r2 = axis.r2_final;
+  if (!std::isfinite(r2)) {
+    return "not measured";
+  }
+  if (r2 <= kTuning.clear_r2) {
+    return r2 < -kTuning.clear_r2 ? "worse than the mean" : "no better than the mean";
+  }
+  return quality(r2);
 }
 
 // Whether least squares is as good without the commands.
@@ -88,8 +99,6 @@ std::vector<std::string> input_lines(const study::StreamResult& result) {
   return lines;
 }
 
-namespace {
-
 chart::TextTable quality_table(const study::StreamResult& result) {
   chart::TextTable table{.title = fmt::format("R² on {} held-out rows ({})",
                                               chart::grouped(result.held_out_rows), result.split),
@@ -105,8 +114,6 @@ chart::TextTable quality_table(const study::StreamResult& result) {
   }
   return table;
 }
-
-}  // namespace
 
 std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
   std::vector<std::string> lines = study::diagnosis_lines(result);
@@ -151,18 +158,51 @@ std::vector<std::string> warning_lines(const study::StreamResult& result) {
 }
 
 std::string verdict_of(const study::AxisResult& axis) {
-  const double r2 = axis.r2_final;
-  if (!std::isfinite(r2)) {
-    return "not measured";
+  const std::string quality = quality_of(axis);
+  if (!(axis.r2_final > kTuning.clear_r2)) {
+    return quality;
   }
-  if (r2 <= kTuning.clear_r2) {
-    return r2 < -kTuning.clear_r2 ? "worse than the mean" : "no better than the mean";
-  }
-  const double behind = axis.baselines.least_squares.r2_final - r2;
+  const double behind = axis.baselines.least_squares.r2_final - axis.r2_final;
   if (behind > kTuning.clear_r2) {
-    return fmt::format("{}; least squares is better by {:.2f}", quality(r2), behind);
+    return fmt::format("{}; least squares is better by {:.2f}", quality, behind);
   }
-  return quality(r2) + (commands_say_nothing(axis.baselines) ? "; the commands say nothing" : "");
+  return quality + (commands_say_nothing(axis.baselines) ? "; the commands say nothing" : "");
+}
+
+std::string quality_sentence(const study::StreamResult& result) {
+  std::vector<std::string> words;
+  std::vector<std::vector<std::string>> axes;
+  for (const study::AxisResult& axis : result.axes) {
+    const auto found = std::ranges::find(words, quality_of(axis));
+    const auto place = static_cast<std::size_t>(found - words.begin());
+    if (found == words.end()) {
+      words.push_back(quality_of(axis));
+      axes.emplace_back();
+    }
+    axes[place].push_back(report::name_of(axis));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += fmt::format("{} {} {}{}", i == 0 ? "Predictions of" : ", of", chart::list_text(axes[i]),
+                        i == 0 ? "are " : "", words[i]);
+  }
+  return text;
+}
+
+std::string headline(const study::StreamResult& result) {
+  if (const std::vector<std::string> warnings = warning_lines(result); !warnings.empty()) {
+    return warnings.front();
+  }
+  const std::vector<Finding>& findings = result.diagnosis.findings;
+  const auto named = std::find_if(findings.rbegin(), findings.rend(), [](const Finding& finding) {
+    return finding.state == FindingState::named;
+  });
+  if (named == findings.rend()) {
+    return quality_sentence(result);
+  }
+  const std::vector<std::string> targets = study::target_names(result);
+  return fmt::format("{} since {:.0f} s", finding_text(*named, {result.input_names, targets}),
+                     named->since_s);
 }
 
 std::string verdict_text(const study::StreamResult& result) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "chart/text_table.hpp"
 #include "study/result.hpp"
 
 namespace kelpie::report {
@@ -28,5 +29,16 @@ std::vector<std::string> warning_lines(const study::StreamResult& result);
 /// How good an axis is, in words: "very good", "least squares is better by 0.06", "no better than
 /// the mean", "the commands say nothing".
 std::string verdict_of(const study::AxisResult& axis);
+
+/// The axes by how good they are: "Predictions of udot and rdot are very good, of vdot good".
+std::string quality_sentence(const study::StreamResult& result);
+
+/// The most important news of the result in one sentence without a full stop: a reason against any
+/// trust; else the last named cause of a change, "th2 gives 60 % of its thrust (…) since 1500 s";
+/// else quality_sentence().
+std::string headline(const study::StreamResult& result);
+
+/// R² of each axis on held-out rows beside simple predictors, and verdict_of().
+chart::TextTable quality_table(const study::StreamResult& result);
 
 }  // namespace kelpie::report

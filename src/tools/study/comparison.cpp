@@ -33,11 +33,12 @@ Contest hold(const log::Dataset& data, const Split& split, const Contender& cont
   Contest contest{contender.kind, contender.name, run_stream(data, split, *model, options)};
   for (AxisResult& axis : contest.stream.axes) {
     axis.update_us = {};
-    axis.stages = {};
+    for (StageEnd& stage : axis.stages) {
+      stage.truth = stage.predicted = {};
+    }
     axis.held_out_time_s = axis.held_out_true = axis.held_out_predicted = {};
     axis.corrected = {};
-    axis.one_step.time_s = axis.one_step.lower = axis.one_step.upper = {};
-    axis.one_step.configuration = {};
+    axis.one_step.lower = axis.one_step.upper = {};
     if (contender.kind == ContenderKind::last_value) {
       axis.validation = {};
       axis.r2_final = axis.r2_mean = axis.r2_min_after_1000 =

@@ -41,8 +41,8 @@ Contender make_contender(ContenderKind kind, std::string name, const log::Datase
 /// The baselines of a log (baselines.hpp). Requires that `data` outlives the contenders.
 std::vector<Contender> baseline_contenders(const log::Dataset& data);
 
-/// Result of a contender. `stream` lacks times, intervals and truths, which only a page about one
-/// model shows. The last value has an R² one step ahead only.
+/// Result of a contender. `stream` lacks times of updates, intervals and held-out truths, which
+/// only a page about one model shows. The last value has an R² one step ahead only.
 struct Contest {
   ContenderKind kind = ContenderKind::kelpie;
   std::string name;

@@ -25,6 +25,21 @@ DiagnosisResult diagnosis_of(const DynamicsModel& model) {
   return result;
 }
 
+ThrusterSinceStart since_the_start(const Cause& health, std::span<const Finding> findings) {
+  ThrusterSinceStart thruster{health};
+  for (const Finding& finding : findings) {
+    for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
+      if (finding.settled && cause.kind == CauseKind::thruster && cause.place == health.place) {
+        thruster.cause.size *= cause.size;
+        thruster.cause.lower *= cause.lower;
+        thruster.cause.upper *= cause.upper;
+        thruster.changed_s.push_back(finding.since_s);
+      }
+    }
+  }
+  return thruster;
+}
+
 std::vector<std::string> target_names(const StreamResult& result) {
   std::vector<std::string> names;
   std::ranges::transform(result.axes, std::back_inserter(names), &AxisResult::name);

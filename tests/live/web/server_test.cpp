@@ -119,6 +119,22 @@ TEST_F(WebPage, WhoComesFirstHearsWhatThereWasThenWhatIsNew) {
   EXPECT_EQ(nlohmann::json::parse(data_of(text, "health"))["signals"][0]["name"], said[0][1]);
 }
 
+TEST_F(WebPage, TheEndOfTheRunIsSaidWithTheLastSamplesBeforeIt) {
+  std::string text;
+  std::thread reader([&] {
+    text = heard(
+        [](const std::string& so_far) { return so_far.find("event: end") != std::string::npos; });
+  });
+  learn(0.5, 5.0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  learn(0.6, 6.0);
+  page_->ended();
+  page_.reset();
+  reader.join();
+  EXPECT_NE(text.find("[0.600,6,"), std::string::npos);
+  EXPECT_LT(text.find("[0.600,6,"), text.find("event: end")) << text;
+}
+
 // Every number of the table; those whose names were ambiguous under the old names as well.
 TEST_F(WebPage, HealthHoldsEveryNumberAndAlert) {
   live::Health health;

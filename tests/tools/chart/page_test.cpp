@@ -68,6 +68,23 @@ TEST(Page, HasALinkToEverySectionThatHoldsSomething) {
   EXPECT_EQ(page.find("none</"), std::string::npos);
 }
 
+TEST(Page, FoldedSectionsComeWithOneLinkForAllOfThem) {
+  const std::string page = chart::html_page(
+      "t", "", {{"first", "<p>x</p>"}, {"<one>", "<p>y</p>", true}, {"two", "<p>z</p>", true}});
+  EXPECT_EQ(take_apart(page).fault, "");
+  EXPECT_EQ(occurrences(page, "<a href=\"#s"), 2U);
+  EXPECT_NE(page.find("<a href=\"#s1\">Details</a>"), std::string::npos);
+  EXPECT_NE(page.find("<summary>&lt;one&gt;</summary>"), std::string::npos);
+}
+
+TEST(Page, CommandsAndIntervalsAreEscaped) {
+  const std::string html = chart::command_lines({{"kelpie <a>", "b&c"}}) +
+                           chart::interval_table({{"<n>", 0.0, -1.0, 1.0, "0", "<note>"}});
+  EXPECT_EQ(take_apart(html).fault, "");
+  EXPECT_EQ(html.find("<n>"), std::string::npos);
+  EXPECT_EQ(html.find("class=\"bar\""), std::string::npos) << "no scale without a value";
+}
+
 TEST(Page, HoldsTheLicenceOfTheLibraryThatDrawsItsFigures) {
   if (chart::kLibraryScript.empty()) {
     GTEST_SKIP() << "built without uPlot (scripts/setup.sh fetches it)";

@@ -33,6 +33,27 @@ TEST(Wording, CutsBetweenCodePoints) {
   EXPECT_EQ(chart::shortened("ṙẇṗq", 1), "…");
 }
 
+TEST(Wording, UnitsReadAsPeopleWriteThem) {
+  EXPECT_EQ(chart::unit_text("m s^-2"), "m/s²");
+  EXPECT_EQ(chart::unit_text("s^-1"), "1/s");
+  EXPECT_EQ(chart::unit_text("N m^2 rad^-1 s^-1"), "N·m²/(rad·s)");
+  EXPECT_EQ(chart::unit_text("m^2/(rad s)"), "m²/(rad s)");
+  EXPECT_EQ(chart::unit_text("m^0.5"), "m^0.5");
+  EXPECT_EQ(chart::unit_text("m s^-12"), "m s^-12");
+  EXPECT_EQ(chart::unit_text("1"), "1");
+  EXPECT_EQ(chart::unit_text(""), "");
+}
+
+RC_GTEST_PROP(Wording, NoUnitEndsIt, (const std::string& text)) {
+  chart::unit_text(text);
+}
+
+TEST(Wording, ListsReadWell) {
+  EXPECT_EQ(chart::list_text({}), "");
+  EXPECT_EQ(chart::list_text({"a"}), "a");
+  EXPECT_EQ(chart::list_text({"a", "b", "c"}), "a, b and c");
+}
+
 TEST(Wording, NumbersReadWell) {
   EXPECT_EQ(chart::grouped(0), "0");
   EXPECT_EQ(chart::grouped(999), "999");

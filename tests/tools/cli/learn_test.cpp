@@ -123,8 +123,8 @@ TEST_F(Learn, CoefficientsAreShownWithTheUnitsGiven) {
         "units = {u = 'm/s', n = 'rad/s', udot = 'cm/s^2'}\n");
   const Outcome outcome =
       testing::succeeded(run("learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out --verbose"));
-  EXPECT_NE(outcome.out.find("udot in m s^-2\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("m rev^-2"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("udot in m/s²\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("m/rev²"), std::string::npos) << outcome.out;
   const auto result = parsed("out/result.json");
   const auto& coefficients = result["axes"][0]["coefficients"];
   EXPECT_EQ(coefficients["units"], nlohmann::json({"m^-1", "m rev^-2"}));

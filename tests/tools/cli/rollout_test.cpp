@@ -37,6 +37,13 @@ TEST_F(RolloutCommand, JudgesAModelOnHeldOutRows) {
   EXPECT_TRUE(exists("roll/report.html"));
 }
 
+TEST_F(RolloutCommand, KeepsTheUnitsOfTheModel) {
+  testing::succeeded(run("learn log.csv --units u=km/h,udot=m/s^2 --out out"));
+  testing::succeeded(rollout("log.csv --horizons 1,10"));
+  EXPECT_NE(content("roll/report.html").find("After 10 s surge is within"), std::string::npos);
+  EXPECT_NE(content("roll/report.html").find("u<br/>in km/h"), std::string::npos);
+}
+
 TEST_F(RolloutCommand, FollowsCommandsFromAStart) {
   std::string commands = "t,n\n";
   for (int i = 0; i <= 400; ++i) {

@@ -160,6 +160,17 @@ std::string refusal(const nlohmann::json& json) {
   return message_of<InputError>([&] { format::parse_model_json(json.dump(), "m.json"); });
 }
 
+TEST(ModelJson, UnitsAreKeptAndWrongOnesNamed) {
+  testing::TemporaryFolder folder;
+  const TrainedModel model = trained(drive(3, 200), "diagonal");
+  const format::ColumnUnits units{{"u", "m s^-1"}, {"udot", "m s^-2"}};
+  testing::write_text(folder / "m.json", format::model_json(model, {}, units));
+  EXPECT_EQ(format::read_units(folder / "m.json"), units);
+  EXPECT_EQ(format::model_json(format::read_model(folder / "m.json")), format::model_json(model));
+  const auto bad = nlohmann::json::parse(format::model_json(model, {}, {{"u", "m//s"}}));
+  EXPECT_EQ(refusal(bad).find("m.json: units.u: 'm//s' is not a unit"), 0U) << refusal(bad);
+}
+
 TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   const auto good = nlohmann::json::parse(format::model_json(trained(drive(3, 200), "diagonal")));
   EXPECT_EQ(refusal(good), "");

@@ -53,7 +53,7 @@ TEST(ComparisonReport, ThePageIsSoundAndEscapesWhatTheLogSays) {
   EXPECT_EQ(take_apart(page).fault, "");
   // Three figures over all axes and one per axis.
   EXPECT_EQ(figures_in(page).size(), 3U + 2U);
-  EXPECT_NE(page.find("What lies below −0.2 is in the table alone."), std::string::npos);
+  EXPECT_NE(page.find("is in the table alone."), std::string::npos);
   EXPECT_EQ(without_programs(page).find("<b>"), std::string::npos);
 }
 
@@ -61,13 +61,33 @@ TEST(ComparisonReport, EveryContenderHasAMarkerAtEveryAxisOfTheFigure) {
   const FigureRead figure =
       figures_in(report::comparison_figure(comparison(kFinals, 3), report::kHeldOutR2)).at(0);
   EXPECT_EQ(figure.spec["x"]["names"], nlohmann::json({"axis0", "axis1", "axis2"}));
-  for (const char* const name : {"kelpie", "terms=none", "least squares", "mean"}) {
+  for (const char* const name : {"kelpie", "terms=none", "least squares"}) {
     ASSERT_EQ(figure.values(name).size(), 3U) << name;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(std::lround(figure.values(name, "x")[axis]), static_cast<long>(axis)) << name;
     }
   }
   EXPECT_TRUE(figure.series("last value").is_null());
+  EXPECT_TRUE(figure.series("mean").is_null()) << "far below the others, which it would press";
+  EXPECT_GT(figure.spec["y"]["range"][0].get<double>(), 0.5);
+}
+
+TEST(ComparisonReport, TheVerdictIsOneSentenceAndTheTableIsRanked) {
+  EXPECT_EQ(report::comparison_verdict(comparison(kFinals)),
+            "Keep kelpie as it is: nothing tried is better by more than 0.01 of R².");
+  EXPECT_EQ(report::comparison_verdict(comparison({.kelpie = 0.6, .variant = 0.7, .fit = 0.5})),
+            "--set terms=none is better than kelpie as it is, by 0.100 of R² in the mean of the "
+            "axes.");
+  EXPECT_EQ(report::comparison_verdict(comparison({.kelpie = -3.0, .variant = 0.0, .fit = -1.0})),
+            "Nothing tried predicts better than the mean of the held-out rows.");
+  const chart::TextTable ranked =
+      report::ranked_view(comparison({.kelpie = 0.6, .variant = 0.7, .fit = 0.65}));
+  ASSERT_EQ(ranked.rows.size(), 4U) << "the last value has no R² on held-out rows";
+  EXPECT_EQ(ranked.rows[0][0], "terms=none");
+  EXPECT_EQ(ranked.rows[1][0], "least squares");
+  EXPECT_EQ(ranked.rows[2].back(), "0.100");
+  const std::string page = report::comparison_html(comparison(kFinals));
+  EXPECT_LT(page.find("Keep kelpie"), page.find("<table"));
 }
 
 }  // namespace

@@ -62,14 +62,40 @@ TEST(StreamFigures, TheCourseHoldsTheWholeRunWithUnitsIntervalChangesAndOutliers
   axis.changes = {{100, 25.0, 20.0, 0, 0}, {200, 50.0, 49.0, 3, 0}};
   axis.outliers = {{300, 75.0, 0.02}};
   const FigureRead figure = read(report::course_figure(axis, kClock));
-  EXPECT_EQ(figure.spec["y"]["label"], "axis0 in m s^-2");
+  EXPECT_EQ(figure.spec["y"]["label"], "axis0 in m/s²");
   EXPECT_EQ(figure.spec["x"]["label"], "time in s");
   EXPECT_EQ(figure.values("measured").size(), 1200U);
   EXPECT_NEAR(figure.values("measured")[10], 0.02, 1e-5);
   EXPECT_TRUE(std::isnan(figure.values("interval", "half")[29]));
   EXPECT_NEAR(figure.values("interval", "half")[30], 0.01, 1e-9);
   EXPECT_EQ(figure.values("outliers removed", "x"), (std::vector<double>{75.0}));
-  EXPECT_EQ(marks_of(figure), (std::set<std::string>{"change found", "known again"}));
+  EXPECT_EQ(marks_of(figure), (std::set<std::string>{"change", "known again"}));
+}
+
+TEST(StreamFigures, OfALongRunAMinuteIsShownFirstAndTheErrorsBelow) {
+  study::StreamResult result = stream_with_intervals();
+  study::OneStep& steps = result.axes[0].one_step;
+  result.axes[0].validation.clear();  // they reach further than the samples
+  result.axes[0].held_out_time_s.clear();
+  for (std::size_t i = 900; i < 1000; ++i) {
+    steps.truth[i] += i % 2 == 0 ? 0.03 : -0.03;  // the liveliest, from 225 s to 250 s
+  }
+  const report::Clock clock = report::clock_of(result);
+  EXPECT_NEAR(clock.first.high - clock.first.low, 60.0, 1e-9);
+  EXPECT_LE(clock.first.low, 225.0);
+  EXPECT_GE(clock.first.high, 250.0);
+  const FigureRead figure = read(report::course_figure(result.axes[0], clock));
+  EXPECT_EQ(figure.spec["start"], nlohmann::json({clock.first.low, clock.first.high}));
+  EXPECT_EQ(figure.spec["errors"]["label"], "error in m/s²");
+  EXPECT_FALSE(figure.series(figure.spec["errors"]["of"].get<std::string>()).is_null());
+
+  Finding finding;
+  finding.since_s = 100.0;
+  finding.state = FindingState::named;
+  result.diagnosis.findings = {finding};
+  EXPECT_NEAR(report::clock_of(result).first.low, 85.0, 1e-9) << "around the change";
+  steps.time_s.resize(300);
+  EXPECT_EQ(report::clock_of(result).first.high, steps.time_s.back()) << "all of a short run";
 }
 
 TEST(StreamFigures, OneWildValueDoesNotFlattenTheOthers) {
@@ -118,12 +144,12 @@ TEST(StreamFigures, EveryChangeOfTheVehicleIsMarked) {
 TEST(StreamFigures, EffectsAndCoefficientsHaveTheirUnitsAndErrors) {
   const study::AxisResult axis = synthetic::stream_with_terms(1).axes[0];
   const FigureRead effects = read(report::effects_figure(axis, kClock));
-  EXPECT_EQ(effects.spec["y"]["label"], "effect in m s^-2");
+  EXPECT_EQ(effects.spec["y"]["label"], "effect in m/s²");
   EXPECT_EQ(effects.spec["series"].size(), 4U);  // two lines, two bands
   const std::vector<std::string> each = report::coefficient_figures(axis, kClock);
   ASSERT_EQ(each.size(), 2U);
   const FigureRead thrust = read(each[1]);
-  EXPECT_EQ(thrust.spec["y"]["label"], "coefficient in m rev^-2");
+  EXPECT_EQ(thrust.spec["y"]["label"], "coefficient in m/rev²");
   EXPECT_NEAR(thrust.values("max(th1,0)^2").back(), 0.001, 1e-7);
   EXPECT_NEAR(thrust.columns.at(thrust.spec["series"][0]["half"].get<std::size_t>()).back(), 1e-4,
               1e-9);
@@ -192,7 +218,7 @@ TEST(StreamFigures, TableJsonAndPageAgreeOnIntervals) {
   EXPECT_TRUE(says(json, "\"rms_error\": null"));
   const std::string page = report::report_html(result);
   EXPECT_TRUE(says(page, "<td>90.0 %</td>"));
-  EXPECT_TRUE(says(page, ">Intervals one step ahead (promised: 0.9)</h2>"));
+  EXPECT_TRUE(says(page, "<summary>Intervals one step ahead (promised: 0.9)</summary>"));
   EXPECT_TRUE(says(page, "Error by novelty"));
 }
 

@@ -54,6 +54,8 @@ TEST(StudyReport, SaysWhoIsBestAndWhatFallsAndFits) {
   EXPECT_EQ(figures_in(pages.page).size(), 3U + 1U);  // one per axis, one of a trend
   EXPECT_NE(pages.page.find("falls"), std::string::npos);
   EXPECT_NE(pages.page.find("th2 gives 48 %"), std::string::npos);
+  EXPECT_LT(pages.page.find("Changes were found on an autonomous"), pages.page.find("<table"));
+  EXPECT_LT(pages.page.find("<td class=\"left\">since 50.0 s: th2 gives"), pages.page.find("<nav"));
 }
 
 TEST(StudyReport, ItsFiguresShowTheMedians) {
@@ -114,6 +116,7 @@ TEST(StudyReport, WithoutAnyResultItListsTheFailures) {
   });
   EXPECT_EQ(take_apart(pages.page).fault, "");
   EXPECT_NE(pages.page.find("of which 4 failed"), std::string::npos);
+  EXPECT_NE(pages.page.find("No change was found on 1 vehicle."), std::string::npos);
   EXPECT_NE(pages.table.find("cannot be read"), std::string::npos);
 }
 

@@ -94,15 +94,15 @@ TEST(Table, TroubleIsSaidWhereThereWasAny) {
 TEST(Table, CoefficientsStandBelowWithUnitsAndChange) {
   const std::string text = report::result_table(synthetic::stream_with_terms(2));
   EXPECT_EQ(report::result_table(synthetic::stream(2)).find("coefficient"), std::string::npos);
-  EXPECT_NE(text.find("axis1 in m s^-2\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("axis1 in m/s²\n"), std::string::npos) << text;
   const std::vector<std::string> all = lines(text);
   const auto row = std::ranges::find_if(
       all, [](const std::string& line) { return line.find("max(th1,0)^2") != std::string::npos; });
   ASSERT_NE(row, all.end());
   std::istringstream words(*row);
   const std::vector<std::string> cells{std::istream_iterator<std::string>(words), {}};
-  EXPECT_EQ(cells, (std::vector<std::string>{"max(th1,0)^2", "0.001000", "–", "m", "rev^-2",
-                                             "0.002000", "−50", "%", "0.04000"}));
+  EXPECT_EQ(cells, (std::vector<std::string>{"max(th1,0)^2", "0.001000", "–", "m/rev²", "0.002000",
+                                             "−50", "%", "0.04000"}));
 }
 
 TEST(Table, CoefficientsFitAHundredColumnsWhateverTheirTexts) {

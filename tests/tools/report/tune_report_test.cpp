@@ -58,15 +58,42 @@ TEST(TuneReport, ThePageShowsCandidatesByScoreAndWorkAndTheCheapOne) {
   result.trials.push_back(judged("c=4", 0.8, 1.0));
   const std::string page = report::tune_html(result, kHeader);
   EXPECT_EQ(take_apart(page).fault, "");
-  EXPECT_NE(
-      page.find("best is default with c=&lt;2&gt;, which scores 0.912 with 200.0 iterations of the "
-                "solver per row; default with c=3 scores 0.911 with 10.00."),
-      std::string::npos);
+  EXPECT_NE(page.find("default with c=3 scores 0.911 with 10.00 iterations of the solver per row; "
+                      "the best, 0.912 with 200.0."),
+            std::string::npos);
   const std::vector<FigureRead> figures = figures_in(page);
   ASSERT_EQ(figures.size(), 1U);  // of the other two nothing was judged
+  EXPECT_NEAR(figures[0].spec["y"]["range"][0].get<double>(), 0.807, 1e-9)
+      << "the range that counts";
   EXPECT_TRUE(figures[0].spec["x"]["log"].get<bool>());
   EXPECT_EQ(figures[0].values("judged on 100 rows").size(), 3U);
-  EXPECT_NE(page.find("Given up: 1."), std::string::npos);
+  EXPECT_NE(page.find("Given up in all rounds: 1."), std::string::npos);
+}
+
+TEST(TuneReport, ThePageBeginsWithTheGain) {
+  study::TuneResult result = small_search();
+  for (study::TunedAxis& axis : result.axes) {
+    axis.all.tuned = 0.905;
+  }
+  const std::string none = report::tune_html(result, kHeader);
+  EXPECT_LT(none.find("No gain: keep the defaults."), none.find("<table"));
+  EXPECT_EQ(none.find("--config tuned.toml"), std::string::npos);
+  result.axes[1].all.tuned = 0.95;
+  const std::string some = report::tune_html(result, kHeader);
+  EXPECT_LT(some.find("Tuned settings score higher: vdot by 0.050."), some.find("<table"));
+  EXPECT_NE(some.find("--config tuned.toml"), std::string::npos);
+  EXPECT_NE(some.find("1 less the mean squared error"), std::string::npos) << "the score defined";
+  EXPECT_EQ(some.find("a preset scores higher"), std::string::npos);
+  for (study::TunedAxis& axis : result.axes) {
+    axis.all.references[0] = 0.97;
+  }
+  EXPECT_NE(report::tune_html(result, kHeader)
+                .find("a preset scores higher than the tuned settings: "
+                      "default."),
+            std::string::npos);
+  result.axes[0].all.tuned = result.axes[1].all.tuned = result.axes[2].all.tuned = NAN;
+  EXPECT_NE(report::tune_html(result, kHeader).find("ended before any settings"),
+            std::string::npos);
 }
 
 TEST(TuneReport, WhereALogIsWorseOffItIsSaidEverywhere) {

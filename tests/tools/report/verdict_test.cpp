@@ -49,6 +49,25 @@ TEST(Verdict, SaysWhereLeastSquaresOrTheMeanIsBetter) {
   EXPECT_EQ(report::verdict_of(axis), "not measured");
 }
 
+TEST(Verdict, TheHeadlineIsAWarningElseANamedCauseElseTheQuality) {
+  study::StreamResult result = two_axes();
+  result.axes[1].r2_final = 0.75;
+  EXPECT_EQ(report::headline(result), "Predictions of axis0 are very good, of axis1 good");
+  Finding finding;
+  finding.since_s = 1500.25;
+  finding.state = FindingState::looking;
+  result.diagnosis.findings = {finding};
+  EXPECT_EQ(report::headline(result), report::quality_sentence(result));
+  result.diagnosis.findings[0].state = FindingState::named;
+  result.diagnosis.findings[0].count = 1;
+  result.diagnosis.findings[0].causes[0] = {CauseKind::thruster, 4, 0.6, 0.55, 0.65};
+  EXPECT_EQ(report::headline(result), "th2 gives 60 % of its thrust (55 to 65 %) since 1500 s");
+  for (study::AxisResult& axis : result.axes) {
+    axis.status.ready = false;
+  }
+  EXPECT_TRUE(has(report::headline(result), "nothing was learned"));
+}
+
 TEST(Verdict, WarnsWhereTheCommandsSayNothing) {
   study::StreamResult result = two_axes();
   result.axes[0].baselines.without_commands.r2_final = 0.93;

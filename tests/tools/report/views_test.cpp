@@ -114,16 +114,23 @@ TEST(Intervals, TogetherHoldEverythingTheNodesDid) {
   EXPECT_TRUE(report::intervals_of(study::AxisResult{}, 10).empty());
 }
 
-TEST(Events, StandWhereTheOldConfigurationWasLastSeenAndWhereAChangeWasFound) {
+TEST(Events, StandAtTheFirstRowOfAConfigurationAndWhereErrorsBeganToGrow) {
   study::AxisResult axis = synthetic::axis("a", 300, 10);
   axis.validation[4].configuration = axis.validation[5].configuration = 2;
   axis.changes = {{120, 30.0, 28.0, 0, 0}, {240, 60.0, 58.0, 2, 0}};
   const std::vector<report::Event> found = report::events_of(axis);
   ASSERT_EQ(found.size(), 3U);
-  EXPECT_EQ(found[0].name, "change found");
-  EXPECT_EQ(found[1].time_s, 50.0);
-  EXPECT_EQ(found[1].name, "configuration 2");
-  EXPECT_EQ(found[2].name, "known again");
+  EXPECT_EQ(found[0].name, "change");
+  EXPECT_EQ(found[0].time_s, 28.0);
+  EXPECT_EQ(found[1].name, "known again");
+  EXPECT_EQ(found[1].time_s, 58.0);
+  EXPECT_EQ(found[2].name, "configuration 2");
+  EXPECT_EQ(found[2].time_s, 62.5) << "no row is known, only the look";
+  // Trained rows know it from 55 s on, held-out rows from 51 s on; the one at 20 s is of before.
+  axis.one_step.time_s = {49.0, 55.0, 56.0};
+  axis.one_step.configuration = {1, 2, 2};
+  axis.stages = {{2, 300, 0.9, {20.0, 51.0, 52.0}, {}, {}}};
+  EXPECT_EQ(report::events_of(axis)[1].time_s, 51.0);
 }
 
 TEST(Histogram, CountsEveryUpdateOnceInItsBin) {
