@@ -145,7 +145,6 @@ void add_identify(CLI::App& app) {
   add_align_option(*command, options->align);
   add_file(command, "--config", options->config, "TOML file; its [log] says what is in the log");
   add_set(command, options->set, "states=SURGE,SWAY,YAW where names don't tell");
-  add_list(command, "--units", options->units, "units of columns, as in th1=rev/s");
   command->add_option("--only", options->only,
                       "number of the configuration; else the first in the log");
   add_list(command, "--thrusters", options->thrusters,
