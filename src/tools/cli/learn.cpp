@@ -251,9 +251,9 @@ Answer answer_of(const LearnArguments& options, const study::StreamResult& resul
   }
   if (has_model) {
     answer.next = {fmt::format("kelpie rollout {} --model {}   (how the error grows in open loop)",
-                               options.log.text(), model),
+                               options.text(options.config), model),
                    fmt::format("kelpie compare {}   (is a simpler model as good?)",
-                               options.log.text())};
+                               options.text(options.config))};
   }
   return answer;
 }

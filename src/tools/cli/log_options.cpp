@@ -166,6 +166,12 @@ std::vector<std::string> PlanOptions::files() const {
   return files;
 }
 
+std::string PlanOptions::text(const std::string& configuration) const {
+  return log.text() + (configuration.empty() ? "" : " --config " + configuration) +
+         (split == PlanOptions().split ? "" : " --split " + split) +
+         (seed == PlanOptions().seed ? "" : fmt::format(" --seed {}", seed));
+}
+
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   study::check_align(options.align, "--align");
   const std::optional<file::TomlNode> root =

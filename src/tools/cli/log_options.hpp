@@ -53,6 +53,9 @@ struct PlanOptions {
   std::uint64_t seed = 1;
 
   std::vector<std::string> files() const;  ///< logs and configuration file
+
+  /// LogOptions::text() with the split and a configuration file ("": none).
+  std::string text(const std::string& configuration) const;
 };
 
 /// A log, or several joined ones, read and ready to be learned.

@@ -52,11 +52,15 @@ void AnswerOptions::begin() const {
 
 void give(const Answer& answer, const AnswerOptions& options) {
   if (options.json) {
-    print_document(answer.document);
+    answer.document.tell(print_document);
   }
-  say("{}\n", answer.verdict);
+  const auto say_block = [](std::string text) {
+    text.resize(text.find_last_not_of('\n') + 1);
+    say("{}\n\n", text);
+  };
+  say_block(answer.verdict);
   if (options.verbose) {
-    say("{}\n", answer.tables);
+    say_block(answer.tables);
   }
   std::size_t widest = 0;
   for (const auto& [what, file] : answer.files) {

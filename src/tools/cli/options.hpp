@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/model/settings.hpp"
 
@@ -61,7 +62,7 @@ struct AnswerOptions {
 struct Answer {
   std::string verdict{};   ///< some ten lines
   std::string tables{};    ///< for --verbose
-  std::string document{};  ///< for --json
+  file::Content document{""};  ///< for --json
   std::vector<std::pair<std::string, std::string>> files{};  ///< what each is, and its path
   std::vector<std::string> next{};                           ///< commands that a user needs next
 };
