@@ -159,7 +159,9 @@ bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) 
     return true;
   }
   try {
-    guess_roles(table, roles);
+    Roles all = roles;
+    all.ignored.clear();  // whoever uses the table refuses a name that is no column
+    guess_roles(table, all);
     return true;
   } catch (const InputError& error) {
     why_not = error.what();
