@@ -187,7 +187,8 @@ std::pair<Unit, double> Unit::in_si() const {
   double factor = 1.0;
   for (const auto& [name, exponent] : powers_) {
     Unit si = named(name);
-    for (const std::span<const Conversion> table : {std::span<const Conversion>(kMotion), std::span<const Conversion>(kTimes)}) {
+    for (const std::span<const Conversion> table :
+         {std::span<const Conversion>(kMotion), std::span<const Conversion>(kTimes)}) {
       const auto found = std::ranges::find(table, name, &Conversion::name);
       if (found != table.end()) {
         si = parse(found->si);

@@ -352,7 +352,8 @@ void SampleStream::State::route_vectors() {
           std::ranges::find_if(image, [](double part) { return part != 0.0; }) - image.begin());
       for (std::size_t k = 0; k < before.size(); ++k) {
         if (before[k].to == source) {
-          routes_[k] = {.to = plan_.source(vector.columns[to]), .factor = before[k].factor * image[to]};
+          routes_[k] = {.to = plan_.source(vector.columns[to]),
+                        .factor = before[k].factor * image[to]};
         }
       }
     }

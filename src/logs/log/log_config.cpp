@@ -288,8 +288,8 @@ LogConfig read_log_config(const file::TomlNode& root) {
 
 namespace {
 
-// Sources are converted to the SI, so angles of a converted attitude are in rad. A derivative has the
-// unit of its source, whatever is said of the derivative.
+// Sources are converted to the SI, so angles of a converted attitude are in rad. A derivative has
+// the unit of its source, whatever is said of the derivative.
 void convert_sources(const LogConfig& config, const Roles& roles, SamplingPlan& plan) {
   std::map<std::string, std::string> units = config.roles.units;
   for (const auto& [name, unit] : roles.units) {

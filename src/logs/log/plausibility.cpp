@@ -146,8 +146,7 @@ std::size_t rows_in(double seconds, double rate_hz) {
 void find_shift(const Windows& windows, std::size_t length, double rate_hz, TargetCheck& check) {
   const auto most = static_cast<std::ptrdiff_t>(rows_in(kLimits.most_late_s, rate_hz));
   const auto step = static_cast<std::ptrdiff_t>(rows_in(kLimits.late_step_s, rate_hz));
-  double best =
-      std::max(kLimits.late_correlation, std::abs(check.correlation) + kLimits.late_gain);
+  double best = std::max(kLimits.late_correlation, std::abs(check.correlation) + kLimits.late_gain);
   for (std::ptrdiff_t late = -most; late <= most; late += step) {
     const auto pair = windows.compare(length, late);
     if (pair && pair->first > best && is_plain(pair->second)) {
@@ -215,19 +214,20 @@ std::optional<Mistake> clock_mistake(const Dataset& data, const std::vector<Targ
   if (!certain && (ratios.size() == 1 || !shared || is_plain(ratio))) {
     return std::nullopt;
   }
-  const std::string why = fmt::format(
-      "all targets are {:.3g} times as large as the slopes of their velocities", ratio);
+  const std::string why =
+      fmt::format("all targets are {:.3g} times as large as the slopes of their velocities", ratio);
   for (const KnownClock& clock : kClocks) {
     const bool fits = certain ? std::abs(std::log(ratio / clock.ratio)) < std::log(kLimits.clock)
                               : near(ratio, clock.ratio);
     if (!data.time_column.empty() && fits) {
-      return Mistake{fmt::format("time stamps are in {} ({})", clock.unit, why),
-                     fmt::format("--units {}={} converts the stamps", data.time_column, clock.unit)};
+      return Mistake{
+          fmt::format("time stamps are in {} ({})", clock.unit, why),
+          fmt::format("--units {}={} converts the stamps", data.time_column, clock.unit)};
     }
   }
-  return Mistake{fmt::format("{}: the log has {:.3g} times as many rows per second as said", why,
-                             ratio),
-                 fmt::format("--rate {:.3g} says so", data.rate_hz * ratio)};
+  return Mistake{
+      fmt::format("{}: the log has {:.3g} times as many rows per second as said", why, ratio),
+      fmt::format("--rate {:.3g} says so", data.rate_hz * ratio)};
 }
 
 std::optional<Mistake> unit_mistake(const TargetCheck& check) {
@@ -313,11 +313,11 @@ std::optional<Mistake> long_gap(const Dataset& data) {
   if (!before) {
     return std::nullopt;
   }
-  return Mistake{fmt::format("no rows for {:.3g} min after {:g} s", longest_s / 60.0,
-                             data.times_s[*before]),
-                 "a vehicle that was changed meanwhile has to be learned anew from there: cut the "
-                 "log",
-                 false};
+  return Mistake{
+      fmt::format("no rows for {:.3g} min after {:g} s", longest_s / 60.0, data.times_s[*before]),
+      "a vehicle that was changed meanwhile has to be learned anew from there: cut the "
+      "log",
+      false};
 }
 
 }  // namespace

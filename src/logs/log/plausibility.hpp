@@ -41,7 +41,7 @@ std::string mistake_text(const Mistake& mistake);
 /// since filters do the same. Cost O(rows). Allocates. Throws what find_states() throws.
 std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states);
 
-/// Mistakes of the clock: stamps equal to the stamp before (refused where more than a tenth are),
+/// Mistakes of the clock: stamps equal to the stamp before (refused where more than 30 % are),
 /// ten minutes without a row, more than 200 rows per second. Cost O(rows). Allocates.
 std::vector<Mistake> clock_mistakes(const Dataset& data);
 

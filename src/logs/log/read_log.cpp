@@ -217,10 +217,14 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
   if (is_of_bag) {
     found = signals_of_bag(source, config, times);
   } else {
+    if (const auto unit = log.roles.units.find(times.time); unit != log.roles.units.end()) {
+      convert_units(table, {*unit});
+      log.roles.units.erase(unit);  // the time of the rows is in s
+    }
     found.signals = signals_of_table(table, plan, times.time);
   }
   log.losses = std::move(found.losses);
-  log.units = all_units(std::move(found.units), plan, roles);
+  log.units = all_units(std::move(found.units), plan, log.roles);
   for (auto& [column, unit] : log.roles.units) {
     unit = log.units[column];  // of the rows
   }

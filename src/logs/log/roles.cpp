@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 17> kPlaces{
 constexpr std::array<std::string_view, 8> kCounters{"run", "index", "idx",   "row",
                                                     "seq", "count", "frame", "window"};
 // Of the angles heading alone is without effect: roll and pitch restore.
-constexpr std::array<std::string_view, 8> kHeadings{"heading", "psi",    "yaw", "hdg",
+constexpr std::array<std::string_view, 8> kHeadings{"heading", "psi",    "yaw",     "hdg",
                                                     "cog",     "course", "yaw_deg", "compass"};
 constexpr std::array<std::string_view, 4> kBatteryWords{"battery", "batt", "soc", "vbat"};
 constexpr std::array<std::string_view, 6> kBatteries{"volt",      "volts",     "voltage",
@@ -253,8 +253,7 @@ Roles without_constants(const Table& table, Roles roles) {
   const auto varies = [&](const std::string& name) {
     const auto found = std::ranges::find(table.names, name);
     return found == table.names.end() ||
-           !is_constant(
-               values_of(table, static_cast<std::size_t>(found - table.names.begin())));
+           !is_constant(values_of(table, static_cast<std::size_t>(found - table.names.begin())));
   };
   if (std::ranges::any_of(roles.inputs, varies)) {
     std::erase_if(roles.inputs, [&](const std::string& name) { return !varies(name); });

@@ -35,14 +35,15 @@ inline constexpr struct Tuning {
     double least_unknown = 0.2;  ///< of a ratio that no known unit explains: by hand
     double most_unknown = 5.0;
     double certain_clock = 500.0;  ///< ratios of all targets beyond tell of a clock; by hand
-    double clock = 3.0;            ///< factor beside that of a clock where all are so large; by hand
+    double clock = 3.0;         ///< factor beside that of a clock where all are so large; by hand
     double near = 0.2;          ///< distance of a ratio from a known factor
     double most_late_s = 5.0;   ///< by hand
     double late_step_s = 0.25;  ///< by hand
-    double most_repeated = 0.1;    ///< share of rows with the stamp of the row before; by hand
+    double most_repeated =
+        0.3;  ///< share of rows with the stamp of the row before; a real log: 0.09
     double longest_gap_s = 600.0;  ///< without a word; by hand
-    double gap_rows = 100.0;       ///< of usual steps in a gap, too: slow logs have no gaps; by hand
-    double fastest_hz = 200.0;     ///< of rows, without a word; by hand
+    double gap_rows = 100.0;    ///< of usual steps in a gap, too: slow logs have no gaps; by hand
+    double fastest_hz = 200.0;  ///< of rows, without a word; by hand
   } plausibility;
 
   // Drafts (docs/templates.md).

@@ -111,8 +111,8 @@ void run_compare(const CompareArguments& options) {
   const std::filesystem::path& folder = out.path();
   const std::string document =
       format::comparison_json(comparison, report::recommendation(comparison));
-  file::write_files_whole(folder, {{"compare.json", document},
-                                   {"compare.html", report::comparison_html(comparison)}});
+  file::write_files_whole(
+      folder, {{"compare.json", document}, {"compare.html", report::comparison_html(comparison)}});
   give({.verdict = report::comparison_verdict(comparison),
         .tables = report::comparison_table(comparison),
         .document = document,

@@ -296,6 +296,11 @@ void learn(const LearnArguments& options) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
   }
   give(answer_of(options, result, has_model, model.ready(), !log.draft.empty()), options.answer);
+  if (!model.ready() && !result.interrupted) {
+    throw InputError({.file = plan.data.source},
+                     fmt::format("nothing was learned: {} training rows are too few for a scale",
+                                 result.training_rows));
+  }
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ void tell_mistakes(const std::string& source, const std::string& field,
     }
   }
   if (!refused.empty()) {
-    throw InputError({.file = source, .field = field},
-                     join_text(refused, "; ") +
-                         "; --accept implausible learns the log as it stands");
+    throw InputError(
+        {.file = source, .field = field},
+        join_text(refused, "; ") + "; --accept implausible learns the log as it stands");
   }
 }
 
@@ -65,8 +65,7 @@ log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new
     opened.roles = log::without_constants(opened.table, std::move(opened.roles));
   }
   log::Dataset data = opened.dataset();
-  tell_mistakes(data.source, data.time_column, log::clock_mistakes(data),
-                !options.accept.empty());
+  tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
   return data;
 }
 
@@ -186,8 +185,7 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   PlannedLog log{.plan = {},
                  .learned = {},
                  .config = root ? format::read_settings_file(*root) : format::SettingsFile{}};
-  log::Dataset data =
-      open_logs(options, config, roles, from == nullptr, log.learned, log.draft);
+  log::Dataset data = open_logs(options, config, roles, from == nullptr, log.learned, log.draft);
   ModelSettings settings =
       from != nullptr ? format::make_settings(log.config, options.set, from->settings())
                       : format::make_settings(log.config, options.set, data.target_names.size());

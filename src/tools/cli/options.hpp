@@ -60,9 +60,9 @@ struct AnswerOptions {
 
 /// The answer of a command.
 struct Answer {
-  std::string verdict{};   ///< some ten lines
-  std::string tables{};    ///< for --verbose
-  file::Content document{""};  ///< for --json
+  std::string verdict{};                                     ///< some ten lines
+  std::string tables{};                                      ///< for --verbose
+  file::Content document{""};                                ///< for --json
   std::vector<std::pair<std::string, std::string>> files{};  ///< what each is, and its path
   std::vector<std::string> next{};                           ///< commands that a user needs next
 };

@@ -132,8 +132,7 @@ std::string settings_advice(const study::Comparison& comparison) {
     for (const double gain : better->inner_gains) {
       inner.push_back(chart::decimal(gain));
     }
-    const double held_out =
-        study::mean_gain(better->stream, comparison.contests.front().stream);
+    const double held_out = study::mean_gain(better->stream, comparison.contests.front().stream);
     return fmt::format(
         "Use --set {}: R² is higher by {} on inner splits of the training rows, and by {} on the "
         "held-out rows (means over the axes).",

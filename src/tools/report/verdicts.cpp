@@ -21,8 +21,8 @@
 namespace kelpie::report {
 namespace {
 
-using study::Contest;
 using study::ContenderKind;
+using study::Contest;
 
 std::string paragraph(const std::string& text) {
   return text.empty() ? "" : chart::wrapped(chart::printable(text)) + "\n";
@@ -64,7 +64,8 @@ std::string comparison_verdict(const study::Comparison& comparison) {
   std::string text =
       fmt::format("Compared {} models on {} rows of {}\n", comparison.contests.size(),
                   chart::grouped(kelpie.training_rows), short_name(kelpie.source));
-  text += paragraph(settings_advice(comparison)) + "\n" + chart::table_text(contest_table(comparison));
+  text +=
+      paragraph(settings_advice(comparison)) + "\n" + chart::table_text(contest_table(comparison));
   for (const std::string& advice : recommendation(comparison)) {
     const bool is_no_news = advice == settings_advice(comparison) ||
                             advice.find("kelpie is the best here") != std::string::npos;
@@ -79,8 +80,7 @@ namespace {
 double work_of(const study::TuneResult& result, const std::string& axis,
                const std::string& settings) {
   for (const study::TrialResult& trial : result.trials) {
-    if (trial.axis == axis && trial.settings == settings &&
-        trial.rung + 1 == result.rungs.size()) {
+    if (trial.axis == axis && trial.settings == settings && trial.rung + 1 == result.rungs.size()) {
       return trial.iterations_per_row;
     }
   }
@@ -113,12 +113,14 @@ std::string tune_verdict(const study::TuneResult& result) {
   if (result.interrupted) {
     text += "INTERRUPTED: the same command resumes the search\n";
   } else if (most > 0.0) {
-    text += paragraph(fmt::format("Gain: the tuned settings score higher by up to {}. The best of "
-                                  "many is partly lucky: see whether R² on held-out rows follows.",
-                                  chart::decimal(most)));
+    text +=
+        paragraph(fmt::format("Gain: the tuned settings score higher by up to {}. The best of "
+                              "many is partly lucky: see whether R² on held-out rows follows.",
+                              chart::decimal(most)));
   } else {
-    text += paragraph("No gain: keep the defaults. No settings drawn score clearly higher than "
-                      "those that the search started from.");
+    text += paragraph(
+        "No gain: keep the defaults. No settings drawn score clearly higher than "
+        "those that the search started from.");
   }
   return text + "\n" + chart::table_text(table) + paragraph(worse_text(result));
 }
@@ -137,8 +139,8 @@ std::string rollout_verdict(const study::OpenLoopResult& result) {
   const auto held = std::ranges::max_element(result.scores, {}, [](const auto& score) {
     return score.name.find("held") != std::string::npos;
   });
-  chart::TextTable table{.title = {}, .head = {"after", "starts"}, .rows = {}, .left = {0},
-                         .whole = true};
+  chart::TextTable table{
+      .title = {}, .head = {"after", "starts"}, .rows = {}, .left = {0}, .whole = true};
   for (std::size_t i = 0; i < result.states.size(); ++i) {
     const std::string unit = result.units[i].empty() ? "" : " [" + result.units[i] + "]";
     table.head.push_back("error of\n" + chart::shortened(result.states[i], chart::kLongestName) +
@@ -155,8 +157,7 @@ std::string rollout_verdict(const study::OpenLoopResult& result) {
   double told_s = 0.0;
   for (std::size_t h = 0; h < model.horizons.size(); ++h) {
     const study::HorizonScore& horizon = model.horizons[h];
-    table.rows.push_back(
-        {fmt::format("{:g} s", horizon.seconds), chart::grouped(horizon.starts)});
+    table.rows.push_back({fmt::format("{:g} s", horizon.seconds), chart::grouped(horizon.starts)});
     for (const double rms : horizon.rms) {
       table.rows.back().push_back(rounded(rms));
     }
@@ -166,15 +167,14 @@ std::string rollout_verdict(const study::OpenLoopResult& result) {
       told_s = horizon.seconds;
       within.clear();
       for (std::size_t i = 0; i < horizon.rms.size(); ++i) {
-        within.push_back(fmt::format("{} within {}{}", result.states[i],
-                                     rounded(horizon.rms[i]),
+        within.push_back(fmt::format("{} within {}{}", result.states[i], rounded(horizon.rms[i]),
                                      result.units[i].empty() ? "" : " " + result.units[i]));
       }
     }
   }
-  std::string text = paragraph(
-      fmt::format("Rolled out {} on {}: {} rows, {}", short_name(result.model),
-                  short_name(result.source), chart::grouped(result.rows), result.split));
+  std::string text =
+      paragraph(fmt::format("Rolled out {} on {}: {} rows, {}", short_name(result.model),
+                            short_name(result.source), chart::grouped(result.rows), result.split));
   text += within.empty() ? "No stretch of rows is long enough for a rollout.\n"
                          : paragraph(fmt::format("After {:g} s: {} (root mean square).", told_s,
                                                  join_text(within, ", ")));

@@ -178,17 +178,15 @@ bool hold_inner(const log::Dataset& data, const Split& split,
       gainers.push_back(i);
     }
   }
-  const std::vector<Split> inner =
-      gainers.size() > 1 ? inner_splits(split) : std::vector<Split>{};
+  const std::vector<Split> inner = gainers.size() > 1 ? inner_splits(split) : std::vector<Split>{};
   std::vector<Contest> contests(inner.size() * gainers.size());
   std::vector<Heat> heats;
   for (std::size_t k = 0; k < contests.size(); ++k) {
     heats.push_back(
         {&contenders[gainers[k % gainers.size()]], &inner[k / gainers.size()], &contests[k]});
   }
-  if (!hold_all(data, heats, options, [&](double share) {
-        return options.keep_going(0.5 * (1.0 + share));
-      })) {
+  if (!hold_all(data, heats, options,
+                [&](double share) { return options.keep_going(0.5 * (1.0 + share)); })) {
     return false;
   }
   for (std::size_t k = 0; k < contests.size(); ++k) {
@@ -228,9 +226,8 @@ Comparison compare(const log::Dataset& data, const Split& split,
   for (std::size_t i = 0; i < contenders.size(); ++i) {
     heats.push_back({&contenders[i], &split, &comparison.contests[i]});
   }
-  const bool finished = hold_all(data, heats, options, [&](double share) {
-    return options.keep_going(0.5 * share);
-  });
+  const bool finished =
+      hold_all(data, heats, options, [&](double share) { return options.keep_going(0.5 * share); });
   if (!finished || !hold_inner(data, split, contenders, options, comparison)) {
     return comparison;
   }

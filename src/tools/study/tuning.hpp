@@ -29,7 +29,7 @@ inline constexpr struct Tuning {
 
   /// docs/compare.md; by hand.
   struct Comparison {
-    double clear_gain = 0.01;            ///< of R², mean over the axes, that a recommendation takes
+    double clear_gain = 0.01;  ///< of R², mean over the axes, that a recommendation takes
     std::size_t least_inner_rows = 300;  ///< training rows for inner splits
   } comparison;
 
@@ -40,7 +40,7 @@ inline constexpr struct Tuning {
     std::array<std::size_t, 2> parts{18, 6};  ///< rows / part in a window of the first two rungs
     std::size_t keep_one_in = 3;              ///< candidates for the next rung: successive halving
     double least_gain = 0.005;  ///< of the score, over the settings at the start; by hand
-    std::size_t rows_between_watches = 32;    ///< progress alone; no result depends on the value
+    std::size_t rows_between_watches = 32;  ///< progress alone; no result depends on the value
   } chain;
 
   /// A target has to be the slope of its velocity; docs/identify.md.

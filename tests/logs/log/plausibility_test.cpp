@@ -103,14 +103,16 @@ TEST(Plausibility, NoiseIsNoMistake) {
 }
 
 TEST(Plausibility, NamesUnits) {
-  expect_mistake(with_input(1, kDegree), "r is in degrees per second, rdot in rad/s² (rdot is 0.01");
+  expect_mistake(with_input(1, kDegree),
+                 "r is in degrees per second, rdot in rad/s² (rdot is 0.01");
   expect_mistake(with_input(1, kDegree), "; --units r=deg/s converts");
   expect_mistake(with_target(1, kDegree), "rdot is in degrees per second squared, r in rad/s");
   expect_mistake(with_input(0, 100.0), "u is in cm/s, udot in m/s²");
   expect_mistake(with_target(0, 1.0 / 9.80665), "udot is in g, u in m/s");
   expect_mistake(with_input(0, 3.6), "u is in km/h, udot in m/s²");
   expect_mistake(with_input(0, 1.0 / 0.5144), "u is in knots, udot in m/s²");
-  expect_mistake(with_target(0, 7.0), "udot is 6.93 times as large as the slope of u: the two have different units");
+  expect_mistake(with_target(0, 7.0),
+                 "udot is 6.93 times as large as the slope of u: the two have different units");
 }
 
 TEST(Plausibility, NamesClocks) {

@@ -111,9 +111,8 @@ TEST(Roles, AColumnThatTellsNothingIsLeftOutWithTheReason) {
 }
 
 TEST(Roles, HeadingsBatteriesAndWhatIsIgnoredAreLeftOut) {
-  const log::Table table =
-      rows_of("t,u,psi,battery_V,soc,th1,n,udot,ndot",
-              {"0,1,7,3,1,1,2,3,1", "1,2,8,1,2,4,3,1,4", "2,1,9,2,4,2,7,2,3"});
+  const log::Table table = rows_of("t,u,psi,battery_V,soc,th1,n,udot,ndot",
+                                   {"0,1,7,3,1,1,2,3,1", "1,2,8,1,2,4,3,1,4", "2,1,9,2,4,2,7,2,3"});
   log::Roles given;
   given.ignored = {"th1", "ndot"};
   const log::Roles roles = log::guess_roles(table, given);
@@ -125,8 +124,9 @@ TEST(Roles, HeadingsBatteriesAndWhatIsIgnoredAreLeftOut) {
             "log.csv: soc: is left out of the inputs: of a battery\n"
             "log.csv: th1: is left out of the inputs: ignored, as asked\n");
   given.ignored = {"thr1"};
-  EXPECT_NE(message_of<InputError>([&] { log::guess_roles(table, given); })
-                .find("thr1: there is no such column (did you mean 'th1'?)"),
+  EXPECT_NE(message_of<InputError>([&] {
+              log::guess_roles(table, given);
+            }).find("thr1: there is no such column (did you mean 'th1'?)"),
             std::string::npos);
   given.ignored = {"u"};
   given.inputs = {"u"};

@@ -97,8 +97,9 @@ TEST_F(Compare, AVariantThatIsKelpieIsNoContenderAndOneThatCannotLearnIsLeftOut)
     twice += row + "," + (column == "n" ? "m" : column) + "\n";
   }
   write("twice.csv", twice);
-  const Outcome outcome = testing::succeeded(
-      run("compare twice.csv --inputs u,n,m --split pieces --set buffer=50 --set adapt=none --out out --verbose"));
+  const Outcome outcome =
+      testing::succeeded(run("compare twice.csv --inputs u,n,m --split pieces --set buffer=50 "
+                             "--set adapt=none --out out --verbose"));
   const nlohmann::json compared = json("out/compare.json");
   std::vector<std::string> names;
   for (const nlohmann::json& contender : compared["contenders"]) {

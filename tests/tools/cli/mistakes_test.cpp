@@ -50,8 +50,9 @@ Rows drive() {
 }
 
 // The log after a change of every row; `more` columns behind, by row.
-std::string csv(const std::function<void(Row&)>& change = [](Row&) {}, const std::string& head = "",
-                const std::function<std::string(std::size_t)>& more = {}) {
+std::string csv(
+    const std::function<void(Row&)>& change = [](Row&) {}, const std::string& head = "",
+    const std::function<std::string(std::size_t)>& more = {}) {
   std::string text = "t,u,r,n,m,udot,rdot" + head + "\n";
   Rows rows = drive();
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -118,7 +119,8 @@ TEST_F(Mistakes, Units) {
   expect(2, csv([](Row& row) { row.u *= 3.6; }), "", "u is in km/h, udot in m/s²");
   expect(2, csv([](Row& row) { row.u /= 0.514444; }), "", "u is in knots, udot in m/s²");
   expect(2, csv([](Row& row) { row.udot /= 9.80665; }), "", "udot is in g, u in m/s");
-  expect(2, csv([](Row& row) { row.udot *= 7.0; }), "", "as large as the slope of u: the two have different units");
+  expect(2, csv([](Row& row) { row.udot *= 7.0; }), "",
+         "as large as the slope of u: the two have different units");
   expect(2, csv(), "--units r=rad/s2", "is not a unit such as m/s^2: a power is written with '^'");
 }
 
@@ -142,8 +144,9 @@ TEST_F(Mistakes, Clocks) {
          "no rows for 60 min after 150 s");
   expect(0, csv([](Row& row) { row.t *= 1.0 / 400.0; }), "--accept implausible",
          "2000 rows per second are more than a vehicle's motion has to tell");
-  expect(2, without_time(), "", "time: is unknown; name the time column with --time or give the "
-                                "rows per second with --rate");
+  expect(2, without_time(), "",
+         "time: is unknown; name the time column with --time or give the "
+         "rows per second with --rate");
   expect(2, csv(), "--rate 5 --time t", "--time excludes --rate");
   expect(2, csv(), "--rate -1", "--rate: '-1' has to be a number from 1e-06 to 1e+06");
   const std::string shuffled = first_lines(csv(), 500) + "3,0.1,0.1,0.1,0.1,0.1,0.1\n";
@@ -151,30 +154,34 @@ TEST_F(Mistakes, Clocks) {
 }
 
 TEST_F(Mistakes, Columns) {
-  const auto more = [](const std::string& cells) {
-    return [cells](std::size_t) { return cells; };
-  };
+  const auto more = [](const std::string& cells) { return [cells](std::size_t) { return cells; }; };
   const auto of_row = [](double factor) {
-    return [factor](std::size_t i) { return fmt::format(",{}", factor * std::sin(0.01 * static_cast<double>(i))); };
+    return [factor](std::size_t i) {
+      return fmt::format(",{}", factor * std::sin(0.01 * static_cast<double>(i)));
+    };
   };
-  expect(0, csv([](Row&) {}, ",flag", more(",1")), "", "flag: is left out of the inputs: 1 in every row");
+  expect(0, csv([](Row&) {}, ",flag", more(",1")), "",
+         "flag: is left out of the inputs: 1 in every row");
   expect(0, csv([](Row&) {}, ",flag", more(",1")), "--inputs u,r,n,m,flag",
          "flag: is left out of the inputs: 1 in every row");
-  expect(0, csv([](Row&) {}, ",depth", of_row(9.0)), "", "depth: is left out of the inputs: a position");
+  expect(0, csv([](Row&) {}, ",depth", of_row(9.0)), "",
+         "depth: is left out of the inputs: a position");
   expect(0, csv([](Row&) {}, ",run", of_row(9.0)), "", "run: is left out of the inputs: a counter");
-  expect(0, csv([](Row&) {}, ",heading", of_row(3.0)), "", "heading: is left out of the inputs: a heading");
+  expect(0, csv([](Row&) {}, ",heading", of_row(3.0)), "",
+         "heading: is left out of the inputs: a heading");
   expect(0, csv([](Row&) {}, ",battery_v", of_row(16.0)), "",
          "battery_v: is left out of the inputs: of a battery");
   expect(0, csv([](Row&) {}, ",note", more(",dive 7")), "",
          "note: is left out of the inputs: 'dive 7' is not a number");
-  expect(0, csv([](Row&) {}, ",vdot", more(",0")), "--ignore m", "m: is left out of the inputs: ignored, as asked");
+  expect(0, csv([](Row&) {}, ",vdot", more(",0")), "--ignore m",
+         "m: is left out of the inputs: ignored, as asked");
   expect(2, csv(), "--ignore fin", "fin: there is no such column");
   expect(2, csv(), "--inputs u,r,n,l", "l: there is no such column");
   expect(2, csv([](Row& row) { row.udot = 0.0; }), "--targets udot",
          "udot: is 0 in every row: nothing to learn");
   const Rows rows = drive();
-  expect(0, csv([](Row&) {}, ",copy", [&](std::size_t i) { return fmt::format(",{}", rows[i].n); }), "",
-         "copy: is left out of the inputs: equals n in every row");
+  expect(0, csv([](Row&) {}, ",copy", [&](std::size_t i) { return fmt::format(",{}", rows[i].n); }),
+         "", "copy: is left out of the inputs: equals n in every row");
 }
 
 TEST_F(Mistakes, Files) {
@@ -184,8 +191,7 @@ TEST_F(Mistakes, Files) {
   expect(2, "0,1,2\n1,2,3\n", "", "the first line holds only numbers; it has to name the columns");
   expect(2, "PK\x03\x04 sheet", "", "is a spreadsheet or a zip file; save the table as CSV");
   expect(2, first_lines(csv(), 21), "", "needs 25 or more");
-  expect(2, first_lines(csv(), 500) + "100,N/A,0.1,0.1,0.1,0.1,0.1\n", "",
-         "'N/A' is not a number");
+  expect(2, first_lines(csv(), 500) + "100,N/A,0.1,0.1,0.1,0.1,0.1\n", "", "'N/A' is not a number");
   expect(2, "t,u,n,udot\n01.05.2023 12:00,1,2,3\n01.05.2023 12:01,2,3,4\n", "",
          "may have the day or the month first");
   write("model.json", "no model");
@@ -198,7 +204,8 @@ TEST_F(Mistakes, Words) {
   expect(2, csv(), "--set gama=1", "gama: unknown setting (did you mean 'gamma'?)");
   expect(2, csv(), "--split peaces", "did you mean 'pieces'?");
   expect_of(2, "lern log.csv", "There is no command 'lern' (did you mean 'learn'?)");
-  expect_of(2, "learn log.csv --unit r=deg/s", "There is no option --unit (did you mean '--units'?)");
+  expect_of(2, "learn log.csv --unit r=deg/s",
+            "There is no option --unit (did you mean '--units'?)");
 }
 
 TEST_F(Mistakes, CommandsThatMoveNothing) {
