@@ -24,10 +24,10 @@ class Unit {
   Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }  ///< Quotient.
   Unit power(double exponent) const;                                             ///< Power.
 
-  /// This unit in units of the SI, and what one of this unit is there: of deg/s it is rad/s, and
-  /// 0.01745. Converted are deg, °, mrad, mm, cm, km, knots (kn, knot, kt), g (9.80665 m/s²), and
-  /// with these or with m and rad also min and h; a unit without any of these is itself. Units of
-  /// commands (us, rpm, rev/min, V, %) stay, since actuators are told in the units of commands.
+  /// The unit in the SI, and the size of one in this unit: rad/s and 0.01745 for deg/s. Converted
+  /// are deg, °, mrad, mm, cm, km, knots (kn, knot, kt), g (9.80665 m/s²), and with these or with m
+  /// and rad also min and h; a unit without any of these is itself. Units of commands (us, rpm,
+  /// rev/min, V, %) stay, since actuators are told in the units of commands.
   std::pair<Unit, double> in_si() const;
 
   bool operator==(const Unit& other) const = default;
