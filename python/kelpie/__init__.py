@@ -10,9 +10,10 @@ from ._alignment import Alignment
 from ._dead_reckoning import DeadReckoning
 from ._estimators import DynamicsModel, OnlineSVR, RolloutResult, Verdict
 from ._kelpie import __version__
+from ._learner import PlausibilityWarning
 from ._log import LogArrays, read_log
 
 __all__ = ["Alignment", "DeadReckoning", "DynamicsModel", "LogArrays", "OnlineSVR",
-           "RolloutResult", "Verdict", "__version__", "read_log"]
+           "PlausibilityWarning", "RolloutResult", "Verdict", "__version__", "read_log"]
 
 del _python

@@ -61,17 +61,11 @@ def states(inputs: Sequence[str], targets: Any) -> dict[str, str]:
     udot, u_dot and du are of u. Of the first ones the library knows by itself.
     """
     names = [targets] if isinstance(targets, str) else list(targets or [])
-    found = [name for target in names for name in _stems(str(target)) if name in inputs]
+    found = [name for target in names
+             for name in _kelpie.differentiated(str(target)) if name in inputs]
     if not names or len(set(found)) != len(names) or found == list(inputs)[:len(names)]:
         return {}
     return {"states": ",".join(found)}
-
-
-def _stems(target: str) -> list[str]:
-    for stem in (target.removesuffix("_dot"), target.removesuffix("dot")):
-        if stem != target:
-            return [stem]
-    return [target[1:]] if target.startswith("d") else []
 
 
 def _require(X: Any, names: Sequence[str], what: str) -> None:

@@ -29,6 +29,16 @@ def find_alignment(
 def guess_roles(
     columns: list[str], inputs: list[str], targets: list[str]
 ) -> tuple[list[str], list[str], str]: ...
+def differentiated(name: str) -> list[str]: ...
+def log_mistakes(
+    inputs: list[str],
+    targets: list[str],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    t: NDArray[np.float64],
+    has_times: bool,
+    states: str,
+) -> list[str]: ...
 def read_log(
     file: str,
     config: str,

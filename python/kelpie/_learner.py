@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from statistics import NormalDist
 from typing import Any, Optional, TypeVar, Union, overload
 
@@ -19,6 +20,10 @@ from ._parameters import Parameters, Word
 Self = TypeVar("Self", bound="Learner")
 
 _STATE_FORMAT = 3  # of pickles
+
+
+class PlausibilityWarning(UserWarning):
+    """Rows of a log that cannot be right: units, signs, rates, clocks."""
 
 
 class Learner(Parameters):
@@ -43,6 +48,9 @@ class Learner(Parameters):
         t : (n,), time [s] or time stamps, never decreasing; or the name of a column of X. Default:
             `rate` rows per second, from 0 on.
 
+        Where the names of inputs and targets tell which target is the derivative of which input
+        (udot of u), PlausibilityWarning names units, signs, rates and clocks that cannot be right.
+
         Rows have no weights: `sample_weight` is rejected (score() accepts weights).
 
         Without `warmup`, the warm-up is at most n, so that few rows give a model too. Raises
@@ -53,6 +61,7 @@ class Learner(Parameters):
         given = self._given(X, y, t, unknown, (self.inputs, self.targets))
         rows, targets = self._checked(given.X, given.y)
         model = self._start(given, rows, targets, most_warmup=max(2, rows.shape[0]))
+        self._warn_of_mistakes(model, given, rows, targets)
         self._learn(model, rows, targets, given.t)
         model.learn_held_back()
         return self
@@ -325,6 +334,14 @@ class Learner(Parameters):
         if columns is not None:
             self.feature_names_in_ = np.array(columns, dtype=object)
         return model
+
+    def _warn_of_mistakes(self, model: _kelpie.LiveModel, given: _frames.Given, rows: Floats,
+                          targets: Floats) -> None:
+        times = self._clock.times(given.t, len(rows), 0, self.rate)
+        for what in _kelpie.log_mistakes(model.inputs, model.targets, rows, targets, times,
+                                         given.t is not None, model.settings["states"]):
+            warnings.warn(f"{what}. Convert the columns, or set `rate`, before fit()",
+                          PlausibilityWarning, stacklevel=3)
 
     def _learn(self: Self, model: _kelpie.LiveModel, rows: Floats, targets: Floats,
                t: Optional[ArrayLike]) -> Self:

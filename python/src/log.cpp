@@ -3,13 +3,16 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bag/open_bag.hpp"
 #include "bindings.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
+#include "log/plausibility.hpp"
 #include "log/read_log.hpp"
+#include "motion/states.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {
@@ -24,6 +27,31 @@ py::tuple guessed_roles(const Names& columns, const Names& inputs, const Names& 
   table.columns.resize(columns.size());
   const log::Roles roles = log::guess_roles(table, {.inputs = inputs, .targets = targets});
   return py::make_tuple(roles.inputs, roles.targets, roles.time);
+}
+
+// The targets and the clock of rows that are to be learned.
+std::vector<std::string> log_mistakes(const Names& inputs, const Names& targets, const Array& x,
+                                      const Array& y, const Array& t, bool has_times,
+                                      const std::string& states) {
+  log::Dataset data;
+  data.input_names = inputs;
+  data.target_names = targets;
+  data.inputs.assign(x.data(), x.data() + x.size());
+  data.targets.assign(y.data(), y.data() + y.size());
+  data.times_s.assign(t.data(), t.data() + t.size());
+  data.configurations.assign(data.times_s.size(), 0);
+  data.time_column = has_times ? "t" : "";
+  data.rate_hz = log::measured_rate(data.times_s);
+  std::vector<std::string> found;
+  if (data.rate_hz > 0.0) {
+    for (const log::Mistake& mistake : log::target_mistakes(data, states)) {
+      found.push_back(mistake.what);
+    }
+    for (const log::Mistake& mistake : log::clock_mistakes(data)) {
+      found.push_back(mistake.what);
+    }
+  }
+  return found;
 }
 
 // What the names tell, as far as they do.
@@ -96,6 +124,16 @@ py::dict read_log(const std::string& file, const std::string& config, const Name
 void bind_log(py::module_& module) {
   module.def("guess_roles", &guessed_roles, py::arg("columns"), py::arg("inputs"),
              py::arg("targets"), "Names of inputs and targets, and of the time or \"\".");
+  module.def(
+      "differentiated",
+      [](const std::string& name) {
+        const std::vector<std::string_view> found = kelpie::differentiated(name);
+        return Names(found.begin(), found.end());
+      },
+      py::arg("name"), "The names that a velocity may have whose derivative is called so.");
+  module.def("log_mistakes", &log_mistakes, py::arg("inputs"), py::arg("targets"), py::arg("x"),
+             py::arg("y"), py::arg("t"), py::arg("has_times"), py::arg("states"),
+             "What cannot be right in these rows, in words (log/plausibility.hpp).");
   module.def("read_log", &read_log, py::arg("file"), py::arg("config"), py::arg("columns"),
              py::arg("header_clock"), py::arg("messages"), py::arg("recover"),
              "A log as a dict: columns and words by name, units, inputs, targets, time, losses.");

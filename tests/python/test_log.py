@@ -2,8 +2,10 @@
 """Logs of all kinds as columns."""
 
 import os
+import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -102,6 +104,7 @@ def test_without_pandas(tmp_path):
     (tmp_path / "log.csv").write_text("t,u\n0,1\n1,2\n")
     script = f"""
 import sys
+import warnings
 sys.modules["pandas"] = None
 import kelpie
 log = kelpie.read_log({str(tmp_path / "log.csv")!r})
@@ -148,3 +151,34 @@ def test_a_recording_that_may_be_read_in_two_ways_is_refused():
     file = real_log("logs/moos_test.alog")
     with pytest.raises(ValueError, match="the signals to use are unclear"):
         kelpie.read_log(file)
+
+
+def drive(rows=1500, step=0.2):
+    """Five minutes of a vehicle in surge and yaw, whose accelerations are slopes of velocities."""
+    random = np.random.default_rng(3)
+    u, r, n, m = 0.0, 0.0, 0.0, 0.0
+    found = []
+    for _ in range(rows):
+        n += (0.3 * random.normal() - n) * step
+        m += (0.3 * random.normal() - m) * step
+        udot, rdot = n - 0.3 * u, m - 0.3 * r
+        found.append((u, r, n, m, udot, rdot))
+        u, r = u + step * udot, r + step * rdot
+    return np.array(found)
+
+
+@pytest.mark.parametrize("mistake, words", [
+    (lambda f: f.assign(r=np.rad2deg(f.r)), "r is in degrees per second, rdot in rad/s²"),
+    (lambda f: f.assign(udot=-f.udot), "udot has the sign opposite to the slope of u"),
+    (lambda f: f.drop(columns="t"), "times as many rows per second as said"),
+])
+def test_fit_warns_of_a_log_that_cannot_be_right(mistake, words):
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(drive(), columns=["u", "r", "n", "m", "udot", "rdot"])
+    frame.insert(0, "t", 0.2 * np.arange(len(frame)))
+    small = {"preset": "paper", "buffer": 20}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        kelpie.DynamicsModel(**small).fit(frame)
+    with pytest.warns(kelpie.PlausibilityWarning, match=re.escape(words)):
+        kelpie.DynamicsModel(**small).fit(mistake(frame))

@@ -8,7 +8,7 @@
 
 namespace kelpie {
 
-/// A unit of measurement as a product of powers of named units, for display: no conversion.
+/// A unit of measurement as a product of powers of named units.
 class Unit {
  public:
   Unit() = default;  ///< dimensionless
@@ -23,6 +23,12 @@ class Unit {
   Unit operator*(const Unit& other) const;                                       ///< Product.
   Unit operator/(const Unit& other) const { return *this * other.power(-1.0); }  ///< Quotient.
   Unit power(double exponent) const;                                             ///< Power.
+
+  /// The unit in the SI, and the size of one in this unit: rad/s and 0.01745 for deg/s. Converted
+  /// are deg, °, mrad, mm, cm, km, knots (kn, knot, kt), g (9.80665 m/s²), and with these or with m
+  /// and rad also min and h; a unit without any of these is itself. Units of commands (us, rpm,
+  /// rev/min, V, %) stay, since actuators are told in the units of commands.
+  std::pair<Unit, double> in_si() const;
 
   bool operator==(const Unit& other) const = default;
 

@@ -52,6 +52,7 @@ struct StreamPlan {
     Interpolation between = Interpolation::line;
     std::optional<double> lag_s = 0.0;  ///< delay of the stamps [s]; empty: to be estimated
     std::size_t keep = kUsualKeep;      ///< number of stored samples
+    double scale = 1.0;                 ///< factor of all values: the unit of the rows
   };
   /// A time derivative.
   struct Derived {

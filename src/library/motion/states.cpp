@@ -63,6 +63,19 @@ std::optional<std::size_t> velocity_axis(std::string_view name) {
   return parts.size() > 1 ? axis_of_field(parts) : axis_of_word(plain);
 }
 
+std::vector<std::string_view> differentiated(std::string_view name) {
+  std::vector<std::string_view> velocities;
+  for (const std::string_view ending : {"_dot", "dot"}) {
+    if (name.ends_with(ending) && name.size() > ending.size()) {
+      velocities.push_back(name.substr(0, name.size() - ending.size()));
+    }
+  }
+  if (name.starts_with('d') && name.size() > 1) {
+    velocities.push_back(name.substr(1));
+  }
+  return velocities;
+}
+
 std::size_t named_velocities(std::span<const std::string> inputs) {
   const auto is_none = [](const std::string& name) { return !velocity_axis(name); };
   return static_cast<std::size_t>(std::ranges::find_if(inputs, is_none) - inputs.begin());

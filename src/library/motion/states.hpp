@@ -16,6 +16,10 @@ namespace kelpie {
 /// angular_velocity.z). Empty for other names, such as roll, pitch and yaw, possibly angles.
 std::optional<std::size_t> velocity_axis(std::string_view name);
 
+/// The names that a velocity may have whose derivative is called `name`: of "udot" and "u_dot" it
+/// is u, of "du" as well; "ddot" gives d and dot. Empty for other names.
+std::vector<std::string_view> differentiated(std::string_view name);
+
 /// Number of velocities at the start of the inputs, by velocity_axis().
 std::size_t named_velocities(std::span<const std::string> inputs);
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <numbers>
+#include <span>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
@@ -14,6 +17,27 @@ namespace {
 
 constexpr std::array kSpellings = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"⁻", "^-"}, {"¹", "1"}, {"²", "^2"}, {"³", "^3"}, {"·", "*"}, {"×", "*"}});
+
+// A unit that is no unit of the SI.
+struct Conversion {
+  std::string_view name;
+  std::string_view si;
+  double factor;  // one such unit in units of the SI
+};
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
+constexpr double kKnot = 1852.0 / 3600.0;
+constexpr std::array kMotion = std::to_array<Conversion>({{"deg", "rad", kRadPerDegree},
+                                                          {"°", "rad", kRadPerDegree},
+                                                          {"mrad", "rad", 1e-3},
+                                                          {"mm", "m", 1e-3},
+                                                          {"cm", "m", 0.01},
+                                                          {"km", "m", 1e3},
+                                                          {"kn", "m/s", kKnot},
+                                                          {"kt", "m/s", kKnot},
+                                                          {"knot", "m/s", kKnot},
+                                                          {"knots", "m/s", kKnot},
+                                                          {"g", "m/s^2", 9.80665}});
+constexpr std::array kTimes = std::to_array<Conversion>({{"min", "s", 60.0}, {"h", "s", 3600.0}});
 
 // Superscripts and raised dots as they are typed on a keyboard.
 std::string plain(std::string_view text) {
@@ -149,6 +173,31 @@ Unit Unit::power(double exponent) const {
   }
   std::erase_if(result.powers_, [](const auto& power) { return power.second == 0.0; });
   return result;
+}
+
+std::pair<Unit, double> Unit::in_si() const {
+  const auto is_of_motion = [](const auto& power) {
+    return power.first == "m" || power.first == "rad" ||
+           std::ranges::find(kMotion, power.first, &Conversion::name) != kMotion.end();
+  };
+  if (std::ranges::none_of(powers_, is_of_motion)) {
+    return {*this, 1.0};
+  }
+  Unit unit;
+  double factor = 1.0;
+  for (const auto& [name, exponent] : powers_) {
+    Unit si = named(name);
+    for (const std::span<const Conversion> table :
+         {std::span<const Conversion>(kMotion), std::span<const Conversion>(kTimes)}) {
+      const auto found = std::ranges::find(table, name, &Conversion::name);
+      if (found != table.end()) {
+        si = parse(found->si);
+        factor *= std::pow(found->factor, exponent);
+      }
+    }
+    unit = unit * si.power(exponent);
+  }
+  return {unit, factor};
 }
 
 std::string Unit::text() const {

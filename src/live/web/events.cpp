@@ -42,7 +42,7 @@ log::Dataset names_of(const live::Configuration& configuration) {
   names.input_names = configuration.plan.inputs;
   names.target_names = configuration.plan.targets;
   for (const auto& [column, unit] : configuration.log.roles.units) {
-    names.units.emplace(column, Unit::parse(unit));
+    names.units.emplace(column, Unit::parse(unit).in_si().first);
   }
   return names;
 }

@@ -27,9 +27,10 @@ Json parse_json(const std::string& text, const std::string& source) {
   } catch (const Json::out_of_range& error) {
     throw InputError({.file = source, .field = "file"},
                      std::string("holds a number out of a double's range: ") + error.what());
-  } catch (const Json::exception& error) {
+  } catch (const Json::parse_error& error) {
     throw InputError({.file = source, .field = "file"},
-                     std::string("is not JSON: ") + error.what());
+                     "is not JSON (from byte " + std::to_string(error.byte) +
+                         " on): another file was given, or this one is damaged");
   }
 }
 

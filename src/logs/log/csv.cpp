@@ -335,6 +335,9 @@ void check_is_text(std::string_view content, const std::string& source) {
   if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF")) {
     refuse_csv(source, 0, "is UTF-16; save it as UTF-8");
   }
+  if (content.starts_with("PK\x03\x04")) {
+    refuse_csv(source, 0, "is a spreadsheet or a zip file; save the table as CSV");
+  }
   if (const std::size_t nul = content.find('\0'); nul != std::string_view::npos) {
     const auto line = 1 + std::ranges::count(content.substr(0, nul), '\n');
     refuse_csv(source, static_cast<std::size_t>(line),

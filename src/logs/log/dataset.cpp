@@ -205,11 +205,7 @@ std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
   }
   for (const auto& [name, text] : roles.units) {
     table.find(name);
-    try {
-      units[name] = Unit::parse(text);
-    } catch (const InputError& error) {
-      refuse(table, name, error.what());
-    }
+    units[name] = si_unit(table.source, name, text).first;
   }
   return units;
 }
@@ -260,6 +256,27 @@ std::vector<double> row_times(const Table& table, const Roles& roles) {
 }
 
 }  // namespace
+
+std::pair<Unit, double> si_unit(const std::string& source, const std::string& column,
+                                const std::string& text) {
+  try {
+    return Unit::parse(text).in_si();
+  } catch (const InputError& error) {
+    throw InputError({.file = source, .field = column}, error.what());
+  }
+}
+
+void convert_units(Table& table, const std::map<std::string, std::string>& units) {
+  table.units.resize(table.names.size());
+  for (const auto& [name, text] : units) {
+    const std::size_t column = table.find(name);
+    const auto [unit, factor] = si_unit(table.source, name, text);
+    table.units[column] = factor == 1.0 ? text : unit.text();
+    for (double& value : table.columns[column]) {
+      value *= factor;
+    }
+  }
+}
 
 std::string columns_text(const Table& table) {
   constexpr std::size_t kShown = 200;
@@ -353,6 +370,7 @@ Dataset make_dataset(const Table& table, const Roles& roles) {
   Dataset data;
   data.source = table.source;
   data.input_names = roles.inputs;
+  data.time_column = roles.time;
   for (const std::size_t column : columns.targets) {
     data.target_names.push_back(table.names[column]);
   }
@@ -365,8 +383,6 @@ Dataset make_dataset(const Table& table, const Roles& roles) {
   if (data.rate_hz == 0.0) {
     refuse(table, roles.time, "time stands still; its stamps have to increase");
   }
-  check_varying(table, data.input_names, data.inputs,
-                "a singular covariance; leave it out with --inputs");
   check_varying(table, data.target_names, data.targets,
                 "nothing to learn, R² is not defined; leave it out with --targets");
   return data;

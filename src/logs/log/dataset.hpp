@@ -104,6 +104,7 @@ struct Dataset {
   std::vector<bool> held_out;         ///< marks of held-out rows; empty: not marked
   std::size_t rows_read = 0;          ///< rows of the log, including skipped rows
   std::size_t rows_skipped = 0;       ///< rows left out: a NaN or infinity in a column in use
+  std::string time_column{};          ///< empty: rows at a rate
   double rate_hz = 0.0;               ///< as given, or 1 / median of the positive time steps
   std::map<std::string, Unit> units;  ///< of columns, as given; for display only
   std::map<std::string, KnownActuator> actuators{};  ///< of inputs, as far as known beforehand
@@ -127,9 +128,22 @@ struct Roles {
   double rate_hz = 0.0;         ///< rows per second without time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
   std::string held_out{};       ///< name of a column of 0 and 1 (held out for validation), or empty
-  std::map<std::string, std::string> units{};        ///< of columns, in the syntax of Unit::parse
+  std::vector<std::string> ignored{};  ///< columns that no guess takes for inputs or targets
+  /// Units of columns, in the syntax of Unit::parse. Readers convert columns to the SI
+  /// (Unit::in_si) and then tell the units of the converted columns.
+  std::map<std::string, std::string> units{};
   std::map<std::string, KnownActuator> actuators{};  ///< of commands
 };
+
+/// The unit in the SI, and what one of the given unit is there (Unit::in_si). Throws InputError
+/// (source, column) on text that is no unit.
+std::pair<Unit, double> si_unit(const std::string& source, const std::string& column,
+                                const std::string& text);
+
+/// Converts the columns named in `units` to the SI, and sets the units of the table. A unit of time
+/// (`t = "ms"`) is kept for Table::seconds_per_unit(). Throws InputError on a missing column and as
+/// si_unit() does.
+void convert_units(Table& table, const std::map<std::string, std::string>& units);
 
 /// Names of columns that are taken as time.
 inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
@@ -137,19 +151,24 @@ inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"
 /// Guesses roles from the names: targets are "Xdot", "dX" and "X_dot" for a column X other than
 /// time; time (unless a rate is given) is the first of kTimeNames, or else the first column of time
 /// stamps; the configuration is "conf" or "configuration". Left out are "split", columns of words,
-/// further time stamps, "X_true" for a column X, constants, counters, positions, and columns equal
-/// to an earlier input; the remaining columns are inputs, velocities (velocity_axis()) first. Roles
-/// in `given` are kept. Throws InputError on no target, no input, or more inputs than a model takes.
+/// further time stamps, "X_true" for a column X, ignored columns, constants, counters, positions,
+/// headings, batteries, and columns equal to an earlier input; the remaining columns are inputs,
+/// velocities (velocity_axis()) first. Roles in `given` are kept. Throws InputError on an ignored
+/// column that is missing or has a role, no target, no input, or more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
 
-/// The columns that guess_roles() leaves out of the inputs with the reasons, for the user: a line
-/// each.
+/// Leaves constant columns out of the inputs that `roles` name, unless all are constant: constants
+/// tell a learner nothing.
+Roles without_constants(const Table& table, Roles roles);
+
+/// The columns that guess_roles() and without_constants() leave out of the inputs and targets with
+/// the reasons, for the user: a line each.
 std::string left_out_text(const Table& table, const Roles& given);
 
 /// Selects the columns by name. Rows with a NaN or infinity in a used column are skipped; equal
 /// time stamps are allowed; unused columns have no effect. Throws InputError (file, line, column)
 /// on a missing column, a duplicate role, no inputs, no targets, text in a used column, a used
-/// column without a finite number, a constant input or target, decreasing or constant time, a rate
+/// column without a finite number, a constant target, decreasing or constant time, a rate
 /// that is not positive and finite, both or neither of time and rate, a fractional configuration, a
 /// mark of held-out rows besides 0 and 1, fewer than two remaining rows, an unknown unit, a unit
 /// for a missing column.

@@ -73,6 +73,8 @@ class LogConfigReader {
         {"configuration",
          [&](const TomlNode& value) { roles().configuration = value.text("a column name"); }},
         {"units", [&](const TomlNode& value) { read_units(value); }},
+        {"ignore",
+         [&](const TomlNode& value) { roles().ignored = file::texts_of(value, kColumns); }},
         {"states", [&](const TomlNode& value) { read_sources(value, Interpolation::line); }},
         {"commands", [&](const TomlNode& value) { read_sources(value, Interpolation::hold); }},
         {"actuators", [&](const TomlNode& value) { read_actuators(value); }},
@@ -284,8 +286,35 @@ LogConfig read_log_config(const file::TomlNode& root) {
   return config;
 }
 
+namespace {
+
+// Sources are converted to the SI, so angles of a converted attitude are in rad. A derivative has
+// the unit of its source, whatever is said of the derivative.
+void convert_sources(const LogConfig& config, const Roles& roles, SamplingPlan& plan) {
+  std::map<std::string, std::string> units = config.roles.units;
+  for (const auto& [name, unit] : roles.units) {
+    units[name] = unit;
+  }
+  std::vector<std::string> converted;
+  for (StreamPlan::Source& source : plan.sources) {
+    if (const auto unit = units.find(source.name); unit != units.end()) {
+      source.scale = si_unit(config.source, source.name, unit->second).second;
+      converted.insert(converted.end(), source.scale != 1.0 ? 1 : 0, source.name);
+    }
+  }
+  for (StreamPlan::Vector& vector : plan.vectors) {
+    vector.is_in_degrees =
+        vector.is_in_degrees && std::ranges::none_of(vector.attitude, [&](const auto& angle) {
+          return std::ranges::count(converted, angle) > 0;
+        });
+  }
+}
+
+}  // namespace
+
 SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles) {
   SamplingPlan plan = config.plan;
+  convert_sources(config, roles, plan);
   plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
   if (plan.rate_hz == 0.0) {
     refuse(config, "log.rate", "is missing; at how many rows per second is the log taken?");

@@ -67,8 +67,18 @@ std::map<std::string, std::string> all_units(std::map<std::string, std::string> 
       found[derived.name] = of->second + "/s";
     }
   }
+  const auto converted = [&](const std::string& column, const std::string& text) {
+    const auto [unit, factor] = si_unit({}, column, text);
+    return std::pair(factor == 1.0 ? text : unit.text(), factor != 1.0);
+  };
   for (const auto& [column, unit] : roles.units) {
-    found[column] = unit;
+    found[column] = converted(column, unit).first;
+  }
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    if (const auto of = roles.units.find(derived.of);
+        of != roles.units.end() && converted(of->first, of->second).second) {
+      found[derived.name] = found[derived.of] + "/s";
+    }
   }
   return found;
 }
@@ -133,6 +143,13 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& pla
   return signals;
 }
 
+// A table whose rows are samples, in units of the SI.
+Log taken_log(Table table, Roles roles) {
+  convert_units(table, roles.units);
+  roles.units.clear();  // the table has them
+  return {.table = std::move(table), .roles = std::move(roles)};
+}
+
 // Whether a table's rows can be samples; else why not.
 bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) {
   const auto is_there = [&](const std::string& name) {
@@ -142,7 +159,9 @@ bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) 
     return true;
   }
   try {
-    guess_roles(table, roles);
+    Roles all = roles;
+    all.ignored.clear();  // whoever uses the table refuses a name that is no column
+    guess_roles(table, all);
     return true;
   } catch (const InputError& error) {
     why_not = error.what();
@@ -177,7 +196,10 @@ Roles over(const Roles& wanted, const Roles& drafted) {
   fill(roles.inputs, drafted.inputs);
   fill(roles.targets, drafted.targets);
   fill(roles.time, drafted.time);
-  fill(roles.units, drafted.units);
+  roles.units.insert(drafted.units.begin(), drafted.units.end());
+  std::erase_if(roles.inputs, [&](const std::string& name) {
+    return std::ranges::count(wanted.ignored, name) > 0;
+  });
   fill(roles.actuators, drafted.actuators);
   return roles;
 }
@@ -195,10 +217,17 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
   if (is_of_bag) {
     found = signals_of_bag(source, config, times);
   } else {
+    if (const auto unit = log.roles.units.find(times.time); unit != log.roles.units.end()) {
+      convert_units(table, {*unit});
+      log.roles.units.erase(unit);  // the time of the rows is in s
+    }
     found.signals = signals_of_table(table, plan, times.time);
   }
   log.losses = std::move(found.losses);
-  log.units = all_units(std::move(found.units), plan, roles);
+  log.units = all_units(std::move(found.units), plan, log.roles);
+  for (auto& [column, unit] : log.roles.units) {
+    unit = log.units[column];  // of the rows
+  }
   Samples samples = sample(plan, std::move(found.signals), source.path);
   log.table = std::move(samples.table);
   log.sampling = std::move(samples.report);
@@ -238,11 +267,11 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
   }
   std::string why_not;
   if (!is_of_bag && can_be_taken(table, roles, why_not)) {
-    return {.table = std::move(table), .roles = roles};
+    return taken_log(std::move(table), roles);
   }
   Draft draft = is_of_bag ? draft_of(source) : draft_of(table);
   if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
-    return {.table = std::move(table), .roles = roles};  // who uses it says what is missing
+    return taken_log(std::move(table), roles);  // who uses it says what is missing
   }
   if (!draft.is_complete()) {
     refuse(source.path, {}, (why_not.empty() ? "" : why_not + "; ") + not_complete(draft, source));

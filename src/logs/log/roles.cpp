@@ -12,6 +12,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "log/dataset.hpp"
+#include "log/known_roles.hpp"
 #include "motion/states.hpp"
 
 namespace kelpie::log {
@@ -25,6 +26,12 @@ constexpr std::array<std::string_view, 17> kPlaces{
     "north", "east", "down", "easting",  "northing",  "pos_x",    "pos_y", "pos_z"};
 constexpr std::array<std::string_view, 8> kCounters{"run", "index", "idx",   "row",
                                                     "seq", "count", "frame", "window"};
+// Of the angles heading alone is without effect: roll and pitch restore.
+constexpr std::array<std::string_view, 8> kHeadings{"heading", "psi",    "yaw",     "hdg",
+                                                    "cog",     "course", "yaw_deg", "compass"};
+constexpr std::array<std::string_view, 4> kBatteryWords{"battery", "batt", "soc", "vbat"};
+constexpr std::array<std::string_view, 6> kBatteries{"volt",      "volts",     "voltage",
+                                                     "voltage_v", "current_a", "amps"};
 
 bool is_among(std::string_view name, const auto& names) {
   return std::ranges::find(names, name) != std::ranges::end(names);
@@ -75,8 +82,8 @@ class Header {
   }
 
   bool is_acceleration(std::string_view name) const {
-    return is_quantity_with(name, "_dot") || is_quantity_with(name, "dot") ||
-           (name.starts_with('d') && is_quantity(name.substr(1)));
+    return std::ranges::any_of(differentiated(name),
+                               [&](std::string_view stem) { return is_quantity(stem); });
   }
 
   // Whether it would be an input if it holds numbers.
@@ -85,7 +92,13 @@ class Header {
                           name == roles.configuration || name == roles.held_out ||
                           is_among(name, kTimeNames) || is_among(name, kConfigurations) ||
                           name == kSplit;
-    return !has_part && !is_acceleration(name) && !is_quantity_with(name, "_true");
+    return !has_part && !is_acceleration(name) && !is_true_value(name);
+  }
+
+  // Whether it would be a target if it varies.
+  bool may_be_target(const std::string& name, const Roles& given) const {
+    return given.targets.empty() && is_acceleration(name) && !is_among(name, given.inputs) &&
+           !is_among(name, given.ignored);
   }
 
   bool is_stamp(std::string_view name) const { return stamps_.contains(name); }
@@ -95,8 +108,9 @@ class Header {
   bool is_quantity(std::string_view stem) const {
     return names_.contains(stem) && !is_among(stem, kTimeNames);
   }
-  bool is_quantity_with(std::string_view name, std::string_view ending) const {
-    return name.ends_with(ending) && is_quantity(name.substr(0, name.size() - ending.size()));
+  bool is_true_value(std::string_view name) const {
+    constexpr std::string_view kTrue = "_true";
+    return name.ends_with(kTrue) && is_quantity(name.substr(0, name.size() - kTrue.size()));
   }
 
   const Table& table_;
@@ -104,11 +118,19 @@ class Header {
   std::unordered_set<std::string_view> stamps_;
 };
 
+bool tells_battery(std::string_view name) {
+  return is_among(name, kBatteries) ||
+         std::ranges::any_of(words_of(name),
+                             [](const std::string& word) { return is_among(word, kBatteryWords); });
+}
+
 // Why a column that could be an input is left out of the guessed inputs; empty: an input.
-// `inputs`: the inputs so far.
-std::string reason_against(const Table& table, std::size_t column,
-                           const std::vector<std::string>& inputs) {
+// `roles`: with the inputs so far.
+std::string reason_against(const Table& table, std::size_t column, const Roles& roles) {
   const std::string& name = table.names[column];
+  if (is_among(name, roles.ignored)) {
+    return "ignored, as asked";
+  }
   const std::span<const double> values = values_of(table, column);
   if (table.is_of_words(column)) {
     return fmt::format("'{}' is not a number", table.texts[column].cell);
@@ -119,10 +141,16 @@ std::string reason_against(const Table& table, std::size_t column,
   if (is_among(name, kPlaces)) {
     return "a position";
   }
+  if (is_among(name, kHeadings)) {
+    return "a heading";
+  }
+  if (tells_battery(name)) {
+    return "of a battery";
+  }
   if (is_constant(values)) {
     return fmt::format("{} in every row", values.front());
   }
-  for (const std::string& earlier : inputs) {
+  for (const std::string& earlier : roles.inputs) {
     if (are_equal(values, values_of(table, table.find(earlier)))) {
       return "equals " + earlier + " in every row";
     }
@@ -143,7 +171,7 @@ std::vector<LeftOut> add_inputs(const Table& table, const Header& header, Roles&
     if (!header.can_be_input(table.names[column], roles)) {
       continue;
     }
-    const std::string reason = reason_against(table, column, roles.inputs);
+    const std::string reason = reason_against(table, column, roles);
     if (!reason.empty()) {
       left_out.push_back({column, reason});
       continue;
@@ -164,6 +192,16 @@ void put_velocities_first(std::vector<std::string>& inputs) {
       inputs, [](const std::string& name) { return velocity_axis(name).has_value(); });
 }
 
+void check_ignored(const Table& table, const Roles& given) {
+  for (const std::string& name : given.ignored) {
+    table.find(name);
+    if (is_among(name, given.inputs) || is_among(name, given.targets)) {
+      throw InputError({.file = table.source, .field = name},
+                       "is both to be ignored and named among the inputs or targets");
+    }
+  }
+}
+
 // All parts but the inputs.
 Roles guess_other_roles(const Table& table, const Header& header, const Roles& given) {
   Roles roles = given;
@@ -175,8 +213,7 @@ Roles guess_other_roles(const Table& table, const Header& header, const Roles& g
     if (roles.configuration.empty() && is_among(name, kConfigurations)) {
       roles.configuration = name;
     }
-    if (given.targets.empty() && header.is_acceleration(name) && !is_among(name, given.inputs) &&
-        !is_constant(values_of(table, column))) {
+    if (header.may_be_target(name, given) && !is_constant(values_of(table, column))) {
       roles.targets.push_back(name);
     }
   }
@@ -191,6 +228,7 @@ Roles guess_other_roles(const Table& table, const Header& header, const Roles& g
 }  // namespace
 
 Roles guess_roles(const Table& table, const Roles& given) {
+  check_ignored(table, given);
   const Header header(table);
   Roles roles = guess_other_roles(table, header, given);
   if (roles.targets.empty()) {
@@ -211,18 +249,48 @@ Roles guess_roles(const Table& table, const Roles& given) {
   return roles;
 }
 
+Roles without_constants(const Table& table, Roles roles) {
+  const auto varies = [&](const std::string& name) {
+    const auto found = std::ranges::find(table.names, name);
+    return found == table.names.end() ||
+           !is_constant(values_of(table, static_cast<std::size_t>(found - table.names.begin())));
+  };
+  if (std::ranges::any_of(roles.inputs, varies)) {
+    std::erase_if(roles.inputs, [&](const std::string& name) { return !varies(name); });
+  }
+  return roles;
+}
+
 std::string left_out_text(const Table& table, const Roles& given) {
   std::string text;
-  if (!given.inputs.empty()) {
+  const auto add = [&](std::size_t column, const char* part, const std::string& reason) {
+    const std::string line =
+        table.has_text(column) ? fmt::format(":{}", table.texts[column].line) : "";
+    text += fmt::format("{}{}: {}: is left out of the {}: {}\n", table.source, line,
+                        table.names[column], part, reason);
+  };
+  const auto constant = [&](std::size_t column) {
+    return fmt::format("{} in every row", table.columns[column].front());
+  };
+  const Header header(table);
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (header.may_be_target(table.names[column], given) && is_constant(values_of(table, column))) {
+      add(column, "targets", constant(column));
+    }
+  }
+  if (given.inputs.empty()) {
+    Roles roles = guess_other_roles(table, header, given);
+    for (const LeftOut& one : add_inputs(table, header, roles)) {
+      add(one.column, "inputs", one.reason);
+    }
     return text;
   }
-  const Header header(table);
-  Roles roles = guess_other_roles(table, header, given);
-  for (const LeftOut& one : add_inputs(table, header, roles)) {
-    const std::string line =
-        table.has_text(one.column) ? fmt::format(":{}", table.texts[one.column].line) : "";
-    text += fmt::format("{}{}: {}: is left out of the inputs: {}\n", table.source, line,
-                        table.names[one.column], one.reason);
+  const Roles varying = without_constants(table, given);
+  for (const std::string& name : given.inputs) {
+    if (!is_among(name, varying.inputs)) {
+      const std::size_t column = table.find(name);
+      add(column, "inputs", constant(column));
+    }
   }
   return text;
 }

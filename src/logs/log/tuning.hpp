@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace kelpie::log {
@@ -17,6 +18,33 @@ inline constexpr struct Tuning {
   std::size_t most_rows_per_sample = 1000;    ///< a higher rate is a mistake; by hand
   std::size_t most_rows = 10'000'000;         ///< of samples: 11 days at 10 Hz; by hand
   double joined_gap_s = 60.0;                 ///< between joined logs; by hand
+
+  /// Plausibility: in CSV logs of real and simulated vehicles ratios lie between 0.83 and 1.08
+  /// where the correlation is 0.8 or more; in an autopilot's log at rest on a bench one is 0.38.
+  struct Plausibility {
+    std::array<double, 2> windows_s{1.0, 5.0};
+    std::size_t least_rows = 5;      ///< of a window: by hand
+    double least_windows = 20.0;     ///< by hand
+    double longest_window = 1.5;     ///< of its usual length: by hand
+    double least_correlation = 0.8;  ///< for a ratio that shows a mistake
+    double unrelated = 0.5;          ///< below, a shift is looked for
+    double late_correlation = 0.65;  ///< at a shift that is a mistake, and …
+    double late_gain = 0.4;          ///< … so much more than without; by hand
+    double least_ratio = 0.6;
+    double most_ratio = 1.7;
+    double least_unknown = 0.2;  ///< of a ratio that no known unit explains: by hand
+    double most_unknown = 5.0;
+    double certain_clock = 500.0;  ///< ratios of all targets beyond tell of a clock; by hand
+    double clock = 3.0;         ///< factor beside that of a clock where all are so large; by hand
+    double near = 0.2;          ///< distance of a ratio from a known factor
+    double most_late_s = 5.0;   ///< by hand
+    double late_step_s = 0.25;  ///< by hand
+    double most_repeated =
+        0.3;  ///< share of rows with the stamp of the row before; a real log: 0.09
+    double longest_gap_s = 600.0;  ///< without a word; by hand
+    double gap_rows = 100.0;    ///< of usual steps in a gap, too: slow logs have no gaps; by hand
+    double fastest_hz = 200.0;  ///< of rows, without a word; by hand
+  } plausibility;
 
   // Drafts (docs/templates.md).
   double usual_rate_hz = 10.0;     ///< of rows; by hand

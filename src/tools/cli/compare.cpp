@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -19,6 +21,7 @@
 #include "kelpie/core/error.hpp"
 #include "report/comparison_report.hpp"
 #include "report/recommendation.hpp"
+#include "report/verdicts.hpp"
 #include "study/comparison.hpp"
 
 namespace kelpie::cli {
@@ -31,6 +34,7 @@ constexpr std::array<const char*, 4> kVariants{"learner=svr", "terms=none", "ada
 struct CompareArguments : PlanOptions {
   std::size_t threads = 0;
   std::string out = "out/compare";
+  AnswerOptions answer;
 };
 
 // The contenders, kelpie first, and those that can't be made.
@@ -89,19 +93,33 @@ study::Comparison run_contenders(const CompareArguments& options, const PlannedL
   return comparison;
 }
 
+// What to learn with the better variant, if there is one.
+std::vector<std::string> next_commands(const CompareArguments& options,
+                                       const study::Comparison& comparison) {
+  const study::Contest* const better = comparison.better_variant();
+  return {fmt::format("kelpie learn {}{}", options.text(options.config),
+                      better != nullptr ? " --set " + better->name : "")};
+}
+
 void run_compare(const CompareArguments& options) {
+  options.answer.begin();
   const PlannedLog log = plan_log(options);
   study::require_held_out(log.plan.split);
   const file::OutFolder out =
       take_out_folder(options.out, {"compare.json", "compare.html"}, options.files());
   const study::Comparison comparison = run_contenders(options, log);
   const std::filesystem::path& folder = out.path();
+  const std::string document =
+      format::comparison_json(comparison, report::recommendation(comparison));
   file::write_files_whole(
-      folder,
-      {{"compare.json", format::comparison_json(comparison, report::recommendation(comparison))},
-       {"compare.html", report::comparison_html(comparison)}});
-  say("{}result: {}\nreport: {}\n", report::comparison_table(comparison),
-      (folder / "compare.json").string(), (folder / "compare.html").string());
+      folder, {{"compare.json", document}, {"compare.html", report::comparison_html(comparison)}});
+  give({.verdict = report::comparison_verdict(comparison),
+        .tables = report::comparison_table(comparison),
+        .document = document,
+        .files = {{"result", (folder / "compare.json").string()},
+                  {"report", (folder / "compare.html").string()}},
+        .next = next_commands(options, comparison)},
+       options.answer);
 }
 
 }  // namespace
@@ -119,6 +137,7 @@ void add_compare(CLI::App& app) {
   add_seed(command, options->seed);
   add_threads(command, options->threads);
   add_out(command, options->out, "folder for compare.json and compare.html");
+  options->answer.add_to(*command, "compare.json");
 }
 
 }  // namespace kelpie::cli

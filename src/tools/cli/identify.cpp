@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,6 +17,7 @@
 #include "format/parameters.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/identification_report.hpp"
+#include "report/verdicts.hpp"
 #include "study/alignment.hpp"
 #include "study/identification.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -40,6 +43,7 @@ struct IdentifyArguments : PlanOptions {
   std::string vehicle;
   std::string frame = "FLU";
   std::string out = "out/identify";
+  AnswerOptions answer;
 };
 
 using Base = std::optional<vehicle::VehicleParameters>;
@@ -102,6 +106,7 @@ void add_simulators(const study::Identification& found, const IdentifyArguments&
 }
 
 void run_identify(const IdentifyArguments& options) {
+  options.answer.begin();
   const Frame frame = body_frame(options.frame);
   const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
   const study::KnownThrust wish = known_thrust(options, base);
@@ -123,12 +128,20 @@ void run_identify(const IdentifyArguments& options) {
                       {kStonefish, std::nullopt}};
   add_simulators(found, options, base, frame, files);
   file::write_files_whole(out.path(), files);
-  say("{}", report::identification_table(found));
+  Answer answer{.verdict = report::identification_verdict(found),
+                .tables = report::identification_table(found),
+                .files = {},
+                .next = {}};
   for (const auto& [name, content] : files) {
     if (content) {
-      say("{}\n", (out.path() / name).string());
+      answer.files.emplace_back("file", (out.path() / name).string());
     }
   }
+  answer.next = {found.scale == study::ScaleSource::none
+                     ? fmt::format("kelpie identify {} --mass KG   (masses and forces, not ratios)",
+                                   options.text(options.config))
+                     : "kelpie simulate SCENARIO.toml   (docs/vehicle.md: drive the vehicle)"};
+  give(answer, options.answer);
 }
 
 }  // namespace
@@ -145,7 +158,6 @@ void add_identify(CLI::App& app) {
   add_align_option(*command, options->align);
   add_file(command, "--config", options->config, "TOML file; its [log] says what is in the log");
   add_set(command, options->set, "states=SURGE,SWAY,YAW where names don't tell");
-  add_list(command, "--units", options->units, "units of columns, as in th1=rev/s");
   command->add_option("--only", options->only,
                       "number of the configuration; else the first in the log");
   add_list(command, "--thrusters", options->thrusters,
@@ -169,6 +181,7 @@ void add_identify(CLI::App& app) {
       ->type_name("{FLU,FRD}");
   add_seed(command, options->seed);
   add_out(command, options->out, "folder for the parameters and files of simulators");
+  options->answer.add_to(*command, "");
 }
 
 }  // namespace kelpie::cli

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/log_options.hpp"
@@ -11,6 +14,7 @@
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/draft.hpp"
+#include "log/plausibility.hpp"
 #include "log/read_log.hpp"
 #include "report/inspect_report.hpp"
 #include "study/first_look.hpp"
@@ -24,18 +28,28 @@ struct InspectArguments {
   std::string draft;
 };
 
-// Reads the samples of the draft; where there are none, says why.
-std::optional<study::FirstLook> look_at(const log::LogSource& source, const log::Draft& draft) {
-  if (!draft.is_complete()) {
-    return std::nullopt;
-  }
+// What `kelpie learn` would find of the log: mistakes, and whether commands and velocities belong
+// together. Where the log cannot be learned as it is, says why.
+struct LearnableLog {
+  std::vector<log::Mistake> mistakes;
+  std::optional<study::FirstLook> look;
+};
+
+LearnableLog look_at(const log::LogSource& source, const log::Draft& draft) {
+  LearnableLog found;
   try {
-    const log::LogConfig config = draft.config(source.path);
-    return study::first_look(log::read_log(source, config, config.roles).dataset());
+    const log::Log log = log::read_log(source, {}, {});
+    warn("{}", log::left_out_text(log.table, log.roles));
+    const log::Dataset data = log.dataset();
+    found.mistakes = log::target_mistakes(data, "auto");
+    std::ranges::move(log::clock_mistakes(data), std::back_inserter(found.mistakes));
+    found.look = study::first_look(data);
   } catch (const InputError& error) {
-    warn("no first look: {}\n", error.what());
-    return std::nullopt;
+    if (draft.is_complete()) {
+      warn("no first look: {}\n", error.what());
+    }
   }
+  return found;
 }
 
 void inspect(const InspectArguments& options) {
@@ -46,13 +60,13 @@ void inspect(const InspectArguments& options) {
     }
   }
   const auto [report, draft, losses] = log::inspect_log(options.log);
-  const std::optional<study::FirstLook> look = look_at(options.log, draft);
+  const auto [mistakes, look] = look_at(options.log, draft);
   if (!options.json.empty()) {
     file::write_file_whole(options.json,
-                           report::inspect_json(report, draft, look, options.log.path));
+                           report::inspect_json(report, draft, look, mistakes, options.log.path));
   }
   say("{}", report::inspect_table(report, options.log.path));
-  say("{}", report::draft_table(draft, look));
+  say("{}", report::draft_table(draft, look) + report::mistakes_text(mistakes));
   if (!options.draft.empty()) {
     file::write_file_whole(options.draft, draft.toml);
     say("template: {}{}\n", options.draft,

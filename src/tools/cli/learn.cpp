@@ -46,8 +46,7 @@ struct LearnArguments : PlanOptions {
   bool resume = false;
   std::string memory;
   std::string out = "out/learn";
-  bool verbose = false;
-  bool quiet = false;
+  AnswerOptions answer;
 };
 
 // The default --out is where the model of the run before is likely to lie.
@@ -242,27 +241,31 @@ file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std
   return take_out_folder(options.out, written, read);
 }
 
-void say_files(const fs::path& folder, bool has_model, bool ready, bool has_draft) {
-  say("model:  {}\nresult: {}\nreport: {}\n",
-      has_model ? (folder / "model.json").string()
-      : ready   ? "none"
-                : "none: too few samples to learn from",
-      (folder / "result.json").string(), (folder / "report.html").string());
+// What was written and what a user of a new model needs next.
+Answer answer_of(const LearnArguments& options, const study::StreamResult& result, bool has_model,
+                 bool ready, bool has_draft) {
+  const fs::path folder = options.out;
+  const std::string model = (folder / "model.json").string();
+  Answer answer{.verdict = report::verdict_text(result),
+                .tables = options.answer.verbose ? report::result_table(result) : "",
+                .document = options.answer.json ? format::result_json(result) : "",
+                .files = {{"model", has_model ? model
+                                    : ready   ? "none"
+                                              : "none: too few samples to learn from"},
+                          {"result", (folder / "result.json").string()},
+                          {"report", (folder / "report.html").string()}},
+                .next = {}};
   if (has_draft) {
-    say("config: {}\n", (folder / kDraftName).string());
+    answer.files.emplace_back("config", (folder / kDraftName).string());
   }
-}
-
-void say_next(const std::vector<report::NextStep>& next) {
-  std::string before = "next:   ";
   for (const report::NextStep& step : next) {
-    say("{}{}   ({})\n", before, step.command, step.purpose);
-    before = "        ";
+    answer.next.push_back(fmt::format("{}   ({})", step.command, step.purpose));
   }
-  say("{}kelpie learn … --verbose   (members, intervals, coefficients, solver)\n", before);
+  return answer;
 }
 
 void learn(const LearnArguments& options) {
+  options.answer.begin();
   require_one_start(options);
   const std::optional<format::Origin> origin =
       options.from.empty() ? std::nullopt : std::optional<format::Origin>(options.from);
@@ -294,7 +297,8 @@ void learn(const LearnArguments& options) {
   const study::StreamResult result = learn_with_progress(options, plan, model, earlier, identity);
   std::vector<report::NextStep> next;
   if (model.ready()) {
-    next = report::after_learning(options.log.source.path, (folder.path() / "model.json").string());
+    next = report::after_learning(options.text(options.config),
+                                  (folder.path() / "model.json").string());
   }
   const bool has_model =
       write_results(folder.path(), result, model,
@@ -303,12 +307,12 @@ void learn(const LearnArguments& options) {
   if (!options.memory.empty()) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
   }
-  if (!options.quiet) {
-    say("{}\n", options.verbose ? report::result_table(result) : report::verdict_text(result));
-    say_files(folder.path(), has_model, model.ready(), !log.draft.empty());
-    if (has_model && !options.verbose) {
-      say_next(next);
-    }
+  give(answer_of(options, result, has_model, model.ready(), !log.draft.empty(), next),
+       options.answer);
+  if (!model.ready() && !result.interrupted) {
+    throw InputError({.file = plan.data.source},
+                     fmt::format("nothing was learned: {} training rows are too few for a scale",
+                                 result.training_rows));
   }
 }
 
@@ -329,8 +333,6 @@ void add_learn(CLI::App& app) {
       "of 400 rows), pieces (every fifth of 25), "
       "tail (the last fifth), random (a fifth; neighbours in time leak), "
       "column:NAME (rows with 1 in it), none (all rows are learned)");
-  add_list(command, "--units", options->units,
-           "units of columns for the report, as in u=m/s,th1=rev/s,udot=m/s^2");
   add_file(command, "--config", options->config, "TOML file with settings (see `kelpie config`)");
   add_set(command, options->set);
   add_seed(command, options->seed);
@@ -352,12 +354,7 @@ void add_learn(CLI::App& app) {
            "file of past models: tried when the vehicle changes, and written again at "
            "the end (see `kelpie memory`)");
   add_out(command, options->out, "folder for result.json, report.html, model.json");
-  CLI::Option* const quiet =
-      command->add_flag("--quiet", options->quiet, "print nothing but warnings and errors");
-  command
-      ->add_flag("--verbose", options->verbose,
-                 "print every table: members, intervals, coefficients, solver")
-      ->excludes(quiet);
+  options->answer.add_to(*command, "result.json");
 }
 
 }  // namespace kelpie::cli

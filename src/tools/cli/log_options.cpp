@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/log_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <optional>
@@ -14,9 +16,9 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "log/dataset.hpp"
+#include "log/plausibility.hpp"
 #include "report/sampling_table.hpp"
 #include "study/alignment.hpp"
-#include "study/plausibility.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -38,31 +40,54 @@ void take_columns(const format::Origin& from, log::Roles& roles) {
   take("--targets", from.targets(), roles.targets);
 }
 
-log::Dataset dataset_of(const log::Log& opened) {
-  warn("{}", log::left_out_text(opened.table, opened.roles));
-  return opened.dataset();
+// Throws InputError with those that are refused, unless these are accepted; says the others.
+void tell_mistakes(const std::string& source, const std::string& field,
+                   const std::vector<log::Mistake>& found, bool accepts) {
+  std::vector<std::string> refused;
+  for (const log::Mistake& mistake : found) {
+    if (mistake.is_refused && !accepts) {
+      refused.push_back(log::mistake_text(mistake));
+    } else {
+      warn("{}: {}\n", source, log::mistake_text(mistake));
+    }
+  }
+  if (!refused.empty()) {
+    throw InputError(
+        {.file = source, .field = field},
+        join_text(refused, "; ") + "; --accept implausible learns the log as it stands");
+  }
+}
+
+// The data of one log; `is_new`: no model wants all its inputs.
+log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new) {
+  if (is_new) {
+    warn("{}", log::left_out_text(opened.table, opened.roles));
+    opened.roles = log::without_constants(opened.table, std::move(opened.roles));
+  }
+  log::Dataset data = opened.dataset();
+  tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
+  return data;
 }
 
 // The first log says what the columns of all are; what was guessed for it holds for all. `draft`:
 // that guess.
-log::Dataset open_logs(const log::LogSource& first, const std::vector<std::string>& more,
-                       log::LogConfig config, log::Roles roles,
-                       std::vector<format::LearnedLog>& learned, std::string& draft) {
-  const log::Log opened = open_log(first, config, roles);
-  std::vector<log::Dataset> logs{dataset_of(opened)};
+log::Dataset open_logs(const PlanOptions& options, log::LogConfig config, log::Roles roles,
+                       bool is_new, std::vector<format::LearnedLog>& learned, std::string& draft) {
+  const log::Log opened = open_log(options.log.source, config, roles);
+  std::vector<log::Dataset> logs{dataset_of(opened, options, is_new)};
   roles.inputs = logs.front().input_names;
   roles.targets = logs.front().target_names;
   if (opened.draft) {
     draft = opened.draft->toml;
-    config = opened.draft->config(first.path);
+    config = opened.draft->config(options.log.source.path);
     roles.time = config.roles.time;
-    roles.units = opened.roles.units;
+    roles.units.insert(config.roles.units.begin(), config.roles.units.end());
     roles.actuators = opened.roles.actuators;
   }
-  for (const std::string& path : more) {
-    log::LogSource source = first;
+  for (const std::string& path : options.more) {
+    log::LogSource source = options.log.source;
     source.path = path;
-    logs.push_back(dataset_of(open_log(source, config, roles)));
+    logs.push_back(dataset_of(open_log(source, config, roles), options, false));
   }
   std::ranges::transform(logs, std::back_inserter(learned), format::learned_log);
   return log::joined(std::move(logs));
@@ -93,7 +118,9 @@ void LogOptions::add_to(CLI::App& command) {
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")
       ->delimiter(',');
+  add_list(&command, "--ignore", ignored, "columns that are neither, separated by commas");
   add_clock_options(command, time, rate_hz);
+  add_units_option(command, units);
   command.add_option("--configuration", configuration,
                      "column numbering the vehicle's configuration");
 }
@@ -113,13 +140,35 @@ log::Roles LogOptions::over(const log::Roles& file) const {
     roles.time = time;
     roles.rate_hz = rate_hz;
   }
+  if (!ignored.empty()) {
+    roles.ignored = ignored;
+  }
+  add_units(units, roles.units);
   return roles;
+}
+
+std::string LogOptions::text() const {
+  std::string text = source.path;
+  const auto add = [&](const char* option, const std::string& value) {
+    text += value.empty() ? "" : fmt::format(" {} {}", option, value);
+  };
+  add("--msg-dir", source.definitions);
+  add("--time", time);
+  add("--rate", rate_hz > 0.0 ? fmt::format("{:g}", rate_hz) : "");
+  add("--units", join_text(units, ","));
+  return text;
 }
 
 std::vector<std::string> PlanOptions::files() const {
   std::vector<std::string> files = more;
   files.insert(files.end(), {log.source.path, config});
   return files;
+}
+
+std::string PlanOptions::text(const std::string& configuration) const {
+  return log.text() + (configuration.empty() ? "" : " --config " + configuration) +
+         (split == PlanOptions().split ? "" : " --split " + split) +
+         (seed == PlanOptions().seed ? "" : fmt::format(" --seed {}", seed));
 }
 
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
@@ -130,24 +179,20 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   const study::SplitSettings split = study::parse_split(options.split, options.seed);
   log::Roles roles = options.log.over(config.roles);
   roles.held_out = split.column;
-  for (const std::string& assignment : options.units) {
-    const auto [column, unit] = format::key_and_value(assignment, "--units");
-    roles.units[column] = unit;
-  }
   if (from != nullptr) {
     take_columns(*from, roles);
   }
   PlannedLog log{.plan = {},
                  .learned = {},
                  .config = root ? format::read_settings_file(*root) : format::SettingsFile{}};
-  log::Dataset data =
-      open_logs(options.log.source, options.more, config, roles, log.learned, log.draft);
+  log::Dataset data = open_logs(options, config, roles, from == nullptr, log.learned, log.draft);
   ModelSettings settings =
       from != nullptr ? format::make_settings(log.config, options.set, from->settings())
                       : format::make_settings(log.config, options.set, data.target_names.size());
   check_terms(settings, data, options.config);
-  if (options.check_targets && options.accept.empty()) {
-    study::require_plausible(data, settings.shared.states);
+  if (options.check_targets) {
+    tell_mistakes(data.source, "targets", log::target_mistakes(data, settings.shared.states),
+                  !options.accept.empty());
   }
   std::optional<AlignmentResult> known;
   if (from != nullptr && options.align == kAlignAuto) {
@@ -173,7 +218,7 @@ void add_accept_option(CLI::App& command, std::vector<std::string>& accept) {
   command
       .add_option("--accept", accept,
                   "learn a log that is refused otherwise: implausible (targets that cannot be the "
-                  "accelerations of the velocities)")
+                  "accelerations of the velocities, stamps that stand still)")
       ->check(CLI::IsMember({kImplausible}));
 }
 
@@ -184,6 +229,20 @@ void add_clock_options(CLI::App& command, std::string& time, double& rate_hz) {
   command.add_option("--rate", rate_hz, "rows per second, where there is no time column [Hz]")
       ->check(within(kSlowestHz, kFastestHz))
       ->excludes(time_option);
+}
+
+void add_units_option(CLI::App& command, std::vector<std::string>& units) {
+  add_list(&command, "--units", units,
+           "units of columns in the log, as in r=deg/s,u=cm/s,th1=rev/s: degrees, mm, cm, km, "
+           "knots, g and time stamps (t=ms) are converted to the SI");
+}
+
+void add_units(const std::vector<std::string>& assignments,
+               std::map<std::string, std::string>& units) {
+  for (const std::string& assignment : assignments) {
+    const auto [column, unit] = format::key_and_value(assignment, "--units");
+    units[column] = unit;
+  }
 }
 
 std::string log_formats() {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,18 @@ struct LogOptions {
   std::string time;
   std::string configuration;
   double rate_hz = 0.0;
+  std::vector<std::string> ignored;
+  std::vector<std::string> units;  ///< column=unit
 
   void add_to(CLI::App& command);
 
-  /// These options over the roles of a configuration file.
+  /// These options over the roles of a configuration file. Throws InputError on a unit without
+  /// column.
   log::Roles over(const log::Roles& file) const;
+
+  /// The log and these options as another command takes them, without inputs and targets, which a
+  /// model knows: "log.csv --rate 4 --units r=deg/s".
+  std::string text() const;
 };
 
 /// The options of a command that learns logs, for a study::LearnPlan.
@@ -37,15 +45,17 @@ struct PlanOptions {
   std::vector<std::string> more;  ///< logs joined to the first
   std::string config;             ///< configuration file, or empty
   std::vector<std::string> set;
-  std::vector<std::string> units;  ///< column=unit
   std::string split = "auto";
   std::string align = "auto";
   bool with_lags = false;             ///< LearnPlan::lags
-  bool check_targets = true;          ///< study::require_plausible()
+  bool check_targets = true;          ///< log::target_mistakes()
   std::vector<std::string> accept{};  ///< --accept
   std::uint64_t seed = 1;
 
   std::vector<std::string> files() const;  ///< logs and configuration file
+
+  /// LogOptions::text() with the split and a configuration file ("": none).
+  std::string text(const std::string& configuration) const;
 };
 
 /// A log, or several joined ones, read and ready to be learned.
@@ -58,9 +68,9 @@ struct PlannedLog {
 
 /// Reads the logs, splits their rows and aligns their commands. `from` is the model to continue,
 /// with its columns, settings and alignment; null: a new model. Prints to stderr the columns left
-/// out by the guess of inputs. Reads each file once, so a log may be a pipe. Throws as open_log()
-/// and study::plan_learning() do, and as study::require_plausible() unless the options accept an
-/// implausible log.
+/// out of the inputs, and mistakes that hardly harm. Reads each file once, so a log may be a pipe.
+/// Throws as open_log() and study::plan_learning() do, and InputError (file) with the mistakes of a
+/// log (log/plausibility.hpp) unless the options accept an implausible log.
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from = nullptr);
 
 /// The option --split; `meaning` is its purpose in this command.
@@ -74,6 +84,13 @@ void add_accept_option(CLI::App& command, std::vector<std::string>& accept);
 
 /// The options of a log's clock: --time and --rate.
 void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
+
+/// The option --units: columns whose values are converted to the SI.
+void add_units_option(CLI::App& command, std::vector<std::string>& units);
+
+/// Adds the units of --units to those of a configuration. Throws InputError on text without column.
+void add_units(const std::vector<std::string>& assignments,
+               std::map<std::string, std::string>& units);
 
 /// "a CSV file, " and bag::recording_formats().
 std::string log_formats();

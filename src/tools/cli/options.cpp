@@ -34,6 +34,46 @@ CLI::Option* add_list(CLI::App* command, const std::string& name, Words& words,
   return command->add_option(name, words, meaning)->delimiter(',');
 }
 
+void AnswerOptions::add_to(CLI::App& command, const std::string& document) {
+  CLI::Option* const less =
+      command.add_flag("--quiet", quiet, "print nothing but warnings and errors");
+  command.add_flag("--verbose", verbose, "print every table below the verdict")->excludes(less);
+  if (!document.empty()) {
+    command.add_flag("--json", json, "print " + document + " in place of the verdict")
+        ->excludes(less);
+  }
+}
+
+void AnswerOptions::begin() const {
+  if (quiet || json) {
+    hush();
+  }
+}
+
+void give(const Answer& answer, const AnswerOptions& options) {
+  if (options.json) {
+    answer.document.tell(print_document);
+  }
+  const auto say_block = [](std::string text) {
+    text.resize(text.find_last_not_of('\n') + 1);
+    say("{}\n\n", text);
+  };
+  say_block(answer.verdict);
+  if (options.verbose) {
+    say_block(answer.tables);
+  }
+  std::size_t widest = 0;
+  for (const auto& [what, file] : answer.files) {
+    widest = std::max(widest, what.size());
+  }
+  for (const auto& [what, file] : answer.files) {
+    say("{:<{}} {}\n", what + ":", widest + 1, file);
+  }
+  for (const std::string& command : answer.next) {
+    say("{:<{}} {}\n", &command == &answer.next.front() ? "next:" : "", widest + 1, command);
+  }
+}
+
 void add_set(CLI::App* command, Words& set, const std::string& meaning) {
   command->add_option("--set", set, meaning)->type_name("SETTING");
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/model/settings.hpp"
 
@@ -43,6 +44,31 @@ void add_out(CLI::App* command, std::string& folder, const std::string& meaning)
 /// An option with words separated by commas.
 CLI::Option* add_list(CLI::App* command, const std::string& name, Words& words,
                       const std::string& meaning);
+
+/// How a command answers: --verbose, --quiet and --json.
+struct AnswerOptions {
+  bool verbose = false;
+  bool quiet = false;
+  bool json = false;
+
+  /// `document` is the file that --json prints; empty: there is no such option.
+  void add_to(CLI::App& command, const std::string& document);
+
+  /// First of all in a command: hushes say() where nothing, or the document alone, is wanted.
+  void begin() const;
+};
+
+/// The answer of a command.
+struct Answer {
+  std::string verdict{};                                     ///< some ten lines
+  std::string tables{};                                      ///< for --verbose
+  file::Content document{""};                                ///< for --json
+  std::vector<std::pair<std::string, std::string>> files{};  ///< what each is, and its path
+  std::vector<std::string> next{};                           ///< commands that a user needs next
+};
+
+/// Prints the answer to stdout.
+void give(const Answer& answer, const AnswerOptions& options);
 
 void add_set(CLI::App* command, Words& set,
              const std::string& meaning = "key=value, over the file (repeatable)");

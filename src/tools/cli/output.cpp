@@ -51,11 +51,22 @@ void refuse_special(std::string_view option, const fs::path& file) {
 }
 
 bool silent = false;
+bool hushed = false;
 
 }  // namespace
 
 void be_silent() {
   silent = true;
+}
+
+void hush() {
+  hushed = true;
+}
+
+void print_document(std::string_view text) {
+  if (!silent) {
+    print_safely(stdout, text);
+  }
 }
 
 void print_safely(std::FILE* stream, std::string_view text) {
@@ -70,7 +81,7 @@ void print_safely(std::FILE* stream, std::string_view text) {
 }
 
 void print_unless_silent(std::FILE* stream, std::string_view text) {
-  if (!silent) {
+  if (!silent && !(hushed && stream == stdout)) {
     print_safely(stream, text);
   }
 }

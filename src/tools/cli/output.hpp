@@ -24,6 +24,12 @@ void print_unless_silent(std::FILE* stream, std::string_view text);
 /// printed.
 void be_silent();
 
+/// Switches say() off.
+void hush();
+
+/// Prints to the standard output stream, hushed or not, but not after be_silent().
+void print_document(std::string_view text);
+
 /// Prints to the standard output stream.
 template <typename... Values>
 void say(fmt::format_string<Values...> format, Values&&... values) {

@@ -37,6 +37,7 @@ struct PredictArguments {
   std::string out = "predictions.csv";
   std::string time;
   double rate_hz = 0.0;
+  std::vector<std::string> units;
   bool jacobian = false;
 };
 
@@ -242,6 +243,7 @@ void predict(const PredictArguments& options) {
     roles.time = options.time;
     roles.rate_hz = options.rate_hz;
   }
+  add_units(options.units, roles.units);
   if (!std::isfinite(roles.rate_hz) || roles.rate_hz < 0.0) {
     throw InputError(
         "rate", number_text(roles.rate_hz) + " is out of range; it has to be > 0 rows per second");
@@ -281,6 +283,7 @@ void add_predict(CLI::App& app) {
       add_command(app, "predict", "Predict the rows of a log with a learned model", predict);
   add_bag_options(*command, options->source, "log", "the log: " + log_formats());
   add_clock_options(*command, options->time, options->rate_hz);
+  add_units_option(*command, options->units);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
   add_file(command, "--model", options->model, "model.json of `kelpie learn`")->required();
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -25,6 +27,7 @@
 #include "log/dataset.hpp"
 #include "model/snapshot.hpp"
 #include "report/rollout_report.hpp"
+#include "report/verdicts.hpp"
 #include "study/alignment.hpp"
 #include "study/open_loop_study.hpp"
 #include "study/split.hpp"
@@ -43,6 +46,7 @@ struct RolloutArguments {
   std::string commands = "linear";
   double step_s = RolloutSettings{}.step_s;
   std::string out = "out/rollout";
+  AnswerOptions answer;
 };
 
 std::vector<std::string> state_names(const TrainedModel& model, const OpenLoop& loop) {
@@ -151,8 +155,16 @@ void write_judgement(const RolloutArguments& options, const study::OpenLoopResul
     files["example.csv"] = log::csv_text(format::trajectory_table(result.example, result.states));
   }
   file::write_files_whole(folder, files);
-  say("{}result: {}\nreport: {}\n", report::rollout_table(result),
-      (folder / "result.json").string(), (folder / "report.html").string());
+  Answer answer{.verdict = report::rollout_verdict(result),
+                .tables = report::rollout_table(result),
+                .document = *files["result.json"],
+                .files = {{"result", (folder / "result.json").string()},
+                          {"report", (folder / "report.html").string()}},
+                .next = {fmt::format("kelpie export {} --c model.c", options.model)}};
+  if (files["example.csv"]) {
+    answer.files.emplace_back("example", (folder / "example.csv").string());
+  }
+  give(answer, options.answer);
 }
 
 // The velocities of --start by name.
@@ -201,6 +213,7 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
 }
 
 void rollout(const RolloutArguments& options) {
+  options.answer.begin();
   constexpr std::size_t kMostHorizons = 100;
   require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
   const TrainedModel model = format::read_model(options.model);
@@ -246,6 +259,7 @@ void add_rollout(CLI::App& app) {
       ->check(within(kShortestS, 60.0))
       ->capture_default_str();
   add_out(command, options->out, "folder for the results");
+  options->answer.add_to(*command, "result.json");
 }
 
 }  // namespace kelpie::cli

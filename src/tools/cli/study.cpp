@@ -23,6 +23,7 @@
 #include "jobs/make_executor.hpp"
 #include "kelpie/core/error.hpp"
 #include "report/study_report.hpp"
+#include "report/verdicts.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -38,6 +39,7 @@ struct StudyArguments {
   std::string out = "out/study";
   std::optional<std::string> part;
   bool merge = false;
+  AnswerOptions answer;
 };
 
 // All that can be wrong before anything is run.
@@ -105,10 +107,17 @@ void write_study(const StudyArguments& options, const fleet::Results& results,
   }
   const fleet::StudyChange* const changed = change ? &*change : nullptr;
   const report::StudyView view{results, summary, changed};
-  file::write_files_whole(out.path(), {{kStudyJson, fleet::study_json(results, summary, changed)},
-                                       {kStudyHtml, report::study_html(view)}});
-  say("{}result: {}\nreport: {}\n", report::study_table(view), (out.path() / kStudyJson).string(),
-      (out.path() / kStudyHtml).string());
+  const file::Content document = fleet::study_json(results, summary, changed);
+  file::write_files_whole(out.path(),
+                          {{kStudyJson, document}, {kStudyHtml, report::study_html(view)}});
+  const std::string result = (out.path() / kStudyJson).string();
+  give({.verdict = report::study_verdict(view),
+        .tables = report::study_table(view),
+        .document = document,
+        .files = {{"result", result}, {"report", (out.path() / kStudyHtml).string()}},
+        .next = {fmt::format("kelpie study {} --out FOLDER --against {}   (after a change)",
+                             options.file, result)}},
+       options.answer);
   if (const std::string text = complaints(options, results, changed); !text.empty()) {
     throw Failure(text);
   }
@@ -164,6 +173,7 @@ void merge_parts(const StudyArguments& options, StudyInput input) {
 }
 
 void run_study(const StudyArguments& options) {
+  options.answer.begin();
   StudyInput input{.plan = fleet::read_plan(options.file), .missions = {}, .earlier = {}};
   if (options.merge || options.part) {
     jobs::require_single_process(options.merge ? "--merge" : "--part");
@@ -218,6 +228,7 @@ void add_study(CLI::App& app) {
           ->type_name("K/N");
   CLI::Option* const merge = command->add_flag(
       "--merge", options->merge, "run nothing; write the result of parts that have ended");
+  options->answer.add_to(*command, kStudyJson);
   part->excludes(merge)->excludes(against)->excludes(worse);
   command->callback([options] { run_study(*options); });
 }

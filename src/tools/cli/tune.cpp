@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "chart/text_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
@@ -23,6 +22,7 @@
 #include "format/tune_json.hpp"
 #include "jobs/make_executor.hpp"
 #include "report/tune_report.hpp"
+#include "report/verdicts.hpp"
 #include "study/alignment.hpp"
 #include "study/split.hpp"
 
@@ -39,6 +39,7 @@ struct TuneArguments : PlanOptions {
   std::size_t threads = 0;
   double most_iterations = study::TuneOptions{}.most_iterations;
   std::string out = "out/tune";
+  AnswerOptions answer;
 };
 
 // What is fixed isn't searched; a --search goes over the file, as a --set would.
@@ -156,23 +157,26 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
   return study::tune(problem, tuning, journal, executor);
 }
 
-void write_tuned(const std::filesystem::path& folder, const study::TuneResult& result,
-                 const study::TuneJournal::Header& header) {
+void write_tuned(const TuneArguments& options, const std::string& logs_text,
+                 const study::TuneResult& result, const study::TuneJournal::Header& header) {
+  const std::filesystem::path folder = options.out;
+  const std::string document = format::tune_json(result, header);
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
-                                   {"tune.json", format::tune_json(result, header)},
+                                   {"tune.json", document},
                                    {"tune.html", report::tune_html(result, header)}});
-  say("{}", report::tune_table(result));
-  if (const std::string worse = report::worse_text(result); !worse.empty()) {
-    say("{}\n", chart::wrapped(worse));
-  }
-  say("tuned:  {}\nresult: {}\nreport: {}\n", (folder / "tuned.toml").string(),
-      (folder / "tune.json").string(), (folder / "tune.html").string());
-  if (result.interrupted) {
-    say("INTERRUPTED: the same command resumes the search\n");
-  }
+  const std::string tuned = (folder / "tuned.toml").string();
+  give({.verdict = report::tune_verdict(result),
+        .tables = logs_text + "\n" + report::tune_table(result),
+        .document = document,
+        .files = {{"tuned", tuned},
+                  {"result", (folder / "tune.json").string()},
+                  {"report", (folder / "tune.html").string()}},
+        .next = {fmt::format("kelpie learn {}", options.text(tuned))}},
+       options.answer);
 }
 
 void run_tune(const TuneArguments& options) {
+  options.answer.begin();
   const std::unique_ptr<jobs::Executor> executor = jobs::make_executor(options.threads);
   if (!executor->leads()) {
     be_silent();
@@ -192,8 +196,7 @@ void run_tune(const TuneArguments& options) {
   const study::TuneJournal::Header header = study::journal_header(problem, tuning);
   study::TuneJournal journal(journal_file(options), header);
   const study::TuneResult result = search(options, problem, tuning, journal, *executor);
-  say("{}\n", logs_text);
-  write_tuned(out.path(), result, header);
+  write_tuned(options, logs_text, result, header);
 }
 
 }  // namespace
@@ -229,6 +232,7 @@ void add_tune(CLI::App& app) {
       ->capture_default_str();
   add_out(command, options->out,
           "folder for tuned.toml, tune.json, tune.html and the journal to resume from");
+  options->answer.add_to(*command, "tune.json");
 }
 
 }  // namespace kelpie::cli

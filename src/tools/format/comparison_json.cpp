@@ -27,9 +27,13 @@ file::Json contest_axis_json(const study::AxisResult& axis) {
 }
 
 file::Json contest_json(const study::Contest& contest) {
-  return {{"name", contest.name},
-          {"kind", kContenderKinds[static_cast<std::size_t>(contest.kind)]},
-          {"axes", file::list(contest.stream.axes, contest_axis_json)}};
+  file::Json json = {{"name", contest.name},
+                     {"kind", kContenderKinds[static_cast<std::size_t>(contest.kind)]},
+                     {"axes", file::list(contest.stream.axes, contest_axis_json)}};
+  if (!contest.inner_gains.empty()) {
+    json["inner_gains"] = file::list(contest.inner_gains, file::number);
+  }
+  return json;
 }
 
 }  // namespace

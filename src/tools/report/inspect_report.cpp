@@ -128,6 +128,10 @@ std::string first_look_text(const study::FirstLook& look) {
   return "\n" + chart::table_text(table);
 }
 
+file::Json mistake_json(const log::Mistake& mistake) {
+  return {{"what", mistake.what}, {"remedy", mistake.remedy}, {"refused", mistake.is_refused}};
+}
+
 file::Json look_json(const study::FirstLook& look) {
   const auto number = [](double value) {
     return std::isfinite(value) ? file::Json(value) : file::Json(nullptr);
@@ -181,8 +185,19 @@ std::string draft_table(const log::Draft& draft, const std::optional<study::Firs
   return text;
 }
 
+std::string mistakes_text(const std::vector<log::Mistake>& mistakes) {
+  std::string text;
+  for (const log::Mistake& mistake : mistakes) {
+    text += chart::wrapped(chart::printable((mistake.is_refused ? "MISTAKE: " : "WARNING: ") +
+                                            log::mistake_text(mistake))) +
+            "\n";
+  }
+  return text;
+}
+
 std::string inspect_json(const bag::BagReport& report, const log::Draft& draft,
-                         const std::optional<study::FirstLook>& look, const std::string& source) {
+                         const std::optional<study::FirstLook>& look,
+                         const std::vector<log::Mistake>& mistakes, const std::string& source) {
   return file::json_text({{"bag", source},
                           {"messages", report.messages},
                           {"start_ns", report.start_ns},
@@ -195,6 +210,7 @@ std::string inspect_json(const bag::BagReport& report, const log::Draft& draft,
                             {"taken", draft.taken},
                             {"open", draft.open},
                             {"remarks", draft.remarks}}},
+                          {"mistakes", file::list(mistakes, mistake_json)},
                           {"first_look", look ? look_json(*look) : file::Json(nullptr)}});
 }
 

@@ -3,8 +3,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "log/draft.hpp"
+#include "log/plausibility.hpp"
 #include "study/first_look.hpp"
 
 namespace kelpie::report {
@@ -15,8 +17,12 @@ std::string inspect_table(const bag::BagReport& report, const std::string& sourc
 /// The signals of a draft, open questions, and the correlation of velocities with commands.
 std::string draft_table(const log::Draft& draft, const std::optional<study::FirstLook>& look);
 
-/// Both as JSON (docs/bags.md).
+/// What cannot be right in a log, a line each with the remedy.
+std::string mistakes_text(const std::vector<log::Mistake>& mistakes);
+
+/// All as JSON (docs/bags.md).
 std::string inspect_json(const bag::BagReport& report, const log::Draft& draft,
-                         const std::optional<study::FirstLook>& look, const std::string& source);
+                         const std::optional<study::FirstLook>& look,
+                         const std::vector<log::Mistake>& mistakes, const std::string& source);
 
 }  // namespace kelpie::report

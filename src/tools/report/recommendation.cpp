@@ -16,6 +16,7 @@ namespace {
 
 using study::ContenderKind;
 using study::Contest;
+using study::use_of;
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
@@ -29,33 +30,12 @@ double final_r2(const Contest* contest, std::size_t axis) {
   return contest == nullptr ? kNotMeasured : contest->stream.axes[axis].r2_final;
 }
 
-// What is worse than the held-out rows' own mean is of no use, however much.
-double use_of(double r2) {
-  return r2 < 0.0 ? 0.0 : r2;
-}
-
-// Mean over the axes on which both have an R², of how much more use `contest` is.
-double mean_gain(const Contest& contest, const Contest& kelpie) {
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (std::size_t axis = 0; axis < kelpie.stream.axes.size(); ++axis) {
-    const double gain = use_of(final_r2(&contest, axis)) - use_of(final_r2(&kelpie, axis));
-    if (std::isfinite(gain)) {
-      sum += gain;
-      ++count;
-    }
-  }
-  return count > 0 ? sum / static_cast<double>(count) : kNotMeasured;
-}
-
-// The variant with the greatest finite score; null without any.
-template <typename Score>
-const Contest* best_variant(const study::Comparison& comparison, Score score) {
-  const Contest* best = nullptr;
+// The greatest R² of a variant on an axis; NaN without any.
+double best_variant(const study::Comparison& comparison, std::size_t axis) {
+  double best = kNotMeasured;
   for (const Contest& contest : comparison.contests) {
-    if (contest.kind == ContenderKind::variant && std::isfinite(score(contest)) &&
-        (best == nullptr || score(contest) > score(*best))) {
-      best = &contest;
+    if (contest.kind == ContenderKind::variant) {
+      best = std::fmax(best, final_r2(&contest, axis));
     }
   }
   return best;
@@ -84,10 +64,8 @@ std::string of_axis(const study::Comparison& comparison, std::size_t axis) {
   }
   const double mean = final_r2(contest_of(comparison, ContenderKind::mean), axis);
   const double fit = final_r2(contest_of(comparison, ContenderKind::least_squares), axis);
-  const Contest* const variant =
-      best_variant(comparison, [&](const Contest& one) { return final_r2(&one, axis); });
-  const double varied = final_r2(variant, axis);
-  if (std::fmax(kelpie, std::fmax(fit, varied)) <= use_of(mean) + kTuning.clear_r2) {
+  if (std::fmax(kelpie, std::fmax(fit, best_variant(comparison, axis))) <=
+      use_of(mean) + kTuning.clear_r2) {
     return of_no_use(kelpie, mean);
   }
   std::vector<std::string> parts;
@@ -95,14 +73,10 @@ std::string of_axis(const study::Comparison& comparison, std::size_t axis) {
     parts.push_back(fmt::format("kelpie is no better than the mean {}.", against(kelpie, mean)));
   }
   if (fit > kelpie + kTuning.clear_r2) {
-    parts.push_back(
-        fmt::format("least squares on physics terms is better {}. Use it for this axis "
-                    "(docs/compare.md says how "
-                    "to make it), or search settings with `kelpie tune`.",
-                    against(fit, kelpie)));
-  }
-  if (varied > kelpie + kTuning.clear_r2) {
-    parts.push_back(fmt::format("--set {} is better {}.", variant->name, against(varied, kelpie)));
+    parts.push_back(fmt::format(
+        "least squares on physics terms is better {}: kelpie has not learned more than these "
+        "terms here. Search settings with `kelpie tune`, or drive longer.",
+        against(fit, kelpie)));
   }
   return parts.empty() ? fmt::format("kelpie is the best here, or within {} of it (R² {}).",
                                      kTuning.clear_r2, chart::decimal(kelpie))
@@ -127,41 +101,6 @@ std::string of_one_step(const study::Comparison& comparison) {
                    ": use kelpie's predictions for what lies further ahead.";
 }
 
-// Nothing where none was tried.
-std::string of_settings(const study::Comparison& comparison) {
-  const Contest& kelpie = comparison.contests.front();
-  std::vector<std::string> tried;
-  bool helps_somewhere = false;
-  for (const Contest& contest : comparison.contests) {
-    if (contest.kind == ContenderKind::variant) {
-      tried.push_back(contest.name);
-      for (std::size_t i = 0; i < kelpie.stream.axes.size(); ++i) {
-        helps_somewhere = helps_somewhere || use_of(final_r2(&contest, i)) >
-                                                 use_of(final_r2(&kelpie, i)) + kTuning.clear_r2;
-      }
-    }
-  }
-  if (tried.empty()) {
-    return "";
-  }
-  const auto gain = [&](const Contest& one) { return mean_gain(one, kelpie); };
-  const Contest* const best = best_variant(comparison, gain);
-  const bool better = best != nullptr && gain(*best) > kTuning.clear_r2;
-  std::string text =
-      better ? fmt::format("For all axes together --set {} is better, by {} in the mean.",
-                           best->name, chart::decimal(gain(*best)))
-             : fmt::format(
-                   "For all axes together none of the settings tried ({}) is better by "
-                   "more than {} in the mean: leave them as they are.",
-                   join_text(tried, ", "), kTuning.clear_r2);
-  if (better || helps_somewhere) {
-    text +=
-        " Which setting is better was chosen on the held-out rows themselves, so its R² is too "
-        "good; try it on another log or split before you rely on it.";
-  }
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string> recommendation(const study::Comparison& comparison) {
@@ -170,12 +109,39 @@ std::vector<std::string> recommendation(const study::Comparison& comparison) {
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     paragraphs.push_back(axes[axis].name + ": " + of_axis(comparison, axis));
   }
-  for (const std::string& text : {of_one_step(comparison), of_settings(comparison)}) {
+  for (const std::string& text : {of_one_step(comparison), settings_advice(comparison)}) {
     if (!text.empty()) {
       paragraphs.push_back(text);
     }
   }
   return paragraphs;
+}
+
+std::string settings_advice(const study::Comparison& comparison) {
+  std::vector<std::string> tried;
+  for (const Contest& contest : comparison.contests) {
+    if (contest.kind == ContenderKind::variant) {
+      tried.push_back(contest.name);
+    }
+  }
+  if (tried.empty()) {
+    return "";
+  }
+  if (const Contest* const better = comparison.better_variant()) {
+    std::vector<std::string> inner;
+    for (const double gain : better->inner_gains) {
+      inner.push_back(chart::decimal(gain));
+    }
+    const double held_out = study::mean_gain(better->stream, comparison.contests.front().stream);
+    return fmt::format(
+        "Use --set {}: R² is higher by {} on inner splits of the training rows, and by {} on the "
+        "held-out rows (means over the axes).",
+        better->name, join_text(inner, " and "), chart::decimal(held_out));
+  }
+  return fmt::format(
+      "No gain: keep the defaults. None of the settings tried ({}) is better by more than {} both "
+      "on inner splits of the training rows and on the held-out rows (means over the axes).",
+      join_text(tried, ", "), kTuning.clear_r2);
 }
 
 }  // namespace kelpie::report

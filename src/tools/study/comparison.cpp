@@ -2,18 +2,24 @@
 #include "study/comparison.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
 
+#include "core/quantile.hpp"
 #include "jobs/executor.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "study/baselines.hpp"
 #include "study/stream.hpp"
 #include "study/training_scales.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
+
+constexpr double kClearGain = kTuning.comparison.clear_gain;
 
 // Baselines learn in next to no time.
 double cost_of(const Contender& contender) {
@@ -32,6 +38,7 @@ Contest hold(const log::Dataset& data, const Split& split, const Contender& cont
   };
   Contest contest{contender.kind, contender.name, run_stream(data, split, *model, options)};
   for (AxisResult& axis : contest.stream.axes) {
+    contest.update_us += axis.update_us.empty() ? 0.0 : quantile(axis.update_us, 0.5);
     axis.update_us = {};
     for (StageEnd& stage : axis.stages) {
       stage.truth = stage.predicted = {};
@@ -95,29 +102,137 @@ std::vector<Contender> baseline_contenders(const log::Dataset& data) {
   return contenders;
 }
 
+double use_of(double r2) {
+  return r2 < 0.0 ? 0.0 : r2;
+}
+
+double mean_gain(const StreamResult& contest, const StreamResult& kelpie) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t axis = 0; axis < kelpie.axes.size(); ++axis) {
+    const double gain = use_of(contest.axes[axis].r2_final) - use_of(kelpie.axes[axis].r2_final);
+    if (std::isfinite(gain)) {
+      sum += gain;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : kUnknown;
+}
+
+std::vector<Split> inner_splits(const Split& split) {
+  const std::vector<std::size_t>& rows = split.training;
+  const SplitSettings fives{.kind = SplitKind::pieces};
+  if (rows.size() < kTuning.comparison.least_inner_rows) {
+    return {};
+  }
+  Split pieces{.label = "pieces of the training rows", .training = {}, .held_out = {}};
+  Split tail{.label = "tail of the training rows", .training = {}, .held_out = {}};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::size_t piece = i * kTuning.split.pieces / rows.size();
+    const bool is_held = piece % fives.every == fives.every - 1;
+    const bool is_last = i >= rows.size() - rows.size() / fives.every;
+    (is_held ? pieces.held_out : pieces.training).push_back(rows[i]);
+    (is_last ? tail.held_out : tail.training).push_back(rows[i]);
+  }
+  return {pieces, tail};
+}
+
+namespace {
+
+// Contenders on rows: every pair a job. False: stopped.
+struct Heat {
+  const Contender* contender;
+  const Split* split;
+  Contest* contest;
+};
+
+bool hold_all(const log::Dataset& data, std::vector<Heat> heats, const CompareOptions& options,
+              const std::function<bool(double)>& keep_going) {
+  std::vector<jobs::Job> list;
+  for (std::size_t i = 0; i < heats.size(); ++i) {
+    const std::string place = std::to_string(i);
+    list.push_back({place, place, cost_of(*heats[i].contender)});
+  }
+  return jobs::make_thread_executor(options.threads)
+      ->run({
+          .jobs = list,
+          .work =
+              [&](const jobs::Job& job, const jobs::Advance& advance) {
+                const Heat& heat = heats[std::stoul(job.task)];
+                *heat.contest = hold(data, *heat.split, *heat.contender, advance);
+                return std::string();
+              },
+          .done = [](std::size_t, const std::string&) {},
+          .keep_going = keep_going,
+      });
+}
+
+// The second part of compare(): nothing to do where no variant gains.
+bool hold_inner(const log::Dataset& data, const Split& split,
+                const std::vector<Contender>& contenders, const CompareOptions& options,
+                Comparison& comparison) {
+  std::vector<std::size_t> gainers{0};
+  for (std::size_t i = 1; i < contenders.size(); ++i) {
+    const Contest& contest = comparison.contests[i];
+    if (contest.kind == ContenderKind::variant &&
+        mean_gain(contest.stream, comparison.contests.front().stream) > kClearGain) {
+      gainers.push_back(i);
+    }
+  }
+  const std::vector<Split> inner = gainers.size() > 1 ? inner_splits(split) : std::vector<Split>{};
+  std::vector<Contest> contests(inner.size() * gainers.size());
+  std::vector<Heat> heats;
+  for (std::size_t k = 0; k < contests.size(); ++k) {
+    heats.push_back(
+        {&contenders[gainers[k % gainers.size()]], &inner[k / gainers.size()], &contests[k]});
+  }
+  if (!hold_all(data, heats, options,
+                [&](double share) { return options.keep_going(0.5 * (1.0 + share)); })) {
+    return false;
+  }
+  for (std::size_t k = 0; k < contests.size(); ++k) {
+    const std::size_t kelpie = k - k % gainers.size();
+    if (k != kelpie) {
+      comparison.contests[gainers[k % gainers.size()]].inner_gains.push_back(
+          mean_gain(contests[k].stream, contests[kelpie].stream));
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+const Contest* Comparison::better_variant() const {
+  const Contest* best = nullptr;
+  double best_gain = kClearGain;
+  for (const Contest& contest : contests) {
+    if (contest.inner_gains.empty()) {
+      continue;
+    }
+    const double gain = std::min(std::ranges::min(contest.inner_gains),
+                                 mean_gain(contest.stream, contests.front().stream));
+    if (gain > best_gain) {
+      best = &contest;
+      best_gain = gain;
+    }
+  }
+  return best;
+}
+
 Comparison compare(const log::Dataset& data, const Split& split,
                    const std::vector<Contender>& contenders, const CompareOptions& options) {
   Comparison comparison;
   comparison.contests.resize(contenders.size());
-  std::vector<jobs::Job> list;
+  std::vector<Heat> heats;
   for (std::size_t i = 0; i < contenders.size(); ++i) {
-    const std::string place = std::to_string(i);
-    list.push_back({place, place, cost_of(contenders[i])});
+    heats.push_back({&contenders[i], &split, &comparison.contests[i]});
   }
-  const bool finished = jobs::make_thread_executor(options.threads)
-                            ->run({
-                                .jobs = list,
-                                .work =
-                                    [&](const jobs::Job& job, const jobs::Advance& advance) {
-                                      const std::size_t i = std::stoul(job.task);
-                                      comparison.contests[i] =
-                                          hold(data, split, contenders[i], advance);
-                                      return std::string();
-                                    },
-                                .done = [](std::size_t, const std::string&) {},
-                                .keep_going = options.keep_going,
-                            });
-  for (std::size_t axis = 0; axis < data.target_names.size() && finished; ++axis) {
+  const bool finished =
+      hold_all(data, heats, options, [&](double share) { return options.keep_going(0.5 * share); });
+  if (!finished || !hold_inner(data, split, contenders, options, comparison)) {
+    return comparison;
+  }
+  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
     judge_one_step(comparison, axis);
   }
   return comparison;

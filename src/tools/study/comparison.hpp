@@ -47,7 +47,23 @@ struct Contest {
   ContenderKind kind = ContenderKind::kelpie;
   std::string name;
   StreamResult stream;
+  double update_us =
+      0.0;  ///< median time of an update of all axes, as the sum of the axes' medians
+  /// Of a variant that gains on the held-out rows: its mean gain over kelpie on each inner split of
+  /// the training rows. Empty: not asked for, or too few rows for inner splits.
+  std::vector<double> inner_gains{};
 };
+
+/// R² of a contest on held-out rows that a user has a use for: 0 for R² below 0, which is worse
+/// than the held-out rows' own mean, however much.
+double use_of(double r2);
+
+/// Mean over the axes on which both have an R², of how much more use `contest` is; NaN: none.
+double mean_gain(const StreamResult& contest, const StreamResult& kelpie);
+
+/// The training rows of `split` as splits of their own: fives of pieces, and the tail. Empty for
+/// too few rows.
+std::vector<Split> inner_splits(const Split& split);
 
 /// Contenders on the same rows.
 struct Comparison {
@@ -55,6 +71,11 @@ struct Comparison {
   /// Samples of the score one step ahead, for each axis: predicted by every contender that ever
   /// predicts.
   std::vector<std::size_t> one_step_samples;
+  /// The variant to use in place of kelpie: the one with the largest of its smallest gains, among
+  /// those with a clear gain (kTuning.comparison) on every inner split and on the held-out rows.
+  /// Null: none.
+  const Contest* better_variant() const;
+
   /// Contenders that couldn't be made, with the reason; filled in by the caller.
   std::vector<std::pair<std::string, std::string>> left_out;
 };
@@ -67,8 +88,9 @@ struct CompareOptions {
 };
 
 /// Shows the training rows to every contender (run_stream) and scores all on the same held-out
-/// rows. Ensures: the result depends on data, split and contenders only. A result stopped by
-/// keep_going is incomplete and useless.
+/// rows. Variants with a clear gain there are held beside kelpie once more, on inner splits of the
+/// training rows. Ensures: the result depends on data, split and contenders only. A result stopped
+/// by keep_going is incomplete and useless.
 Comparison compare(const log::Dataset& data, const Split& split,
                    const std::vector<Contender>& contenders, const CompareOptions& options);
 

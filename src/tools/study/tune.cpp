@@ -242,7 +242,8 @@ class Search {
     }
   }
 
-  // Ranks a bracket's candidates on a rung and lets the better third and the base go on. Where a
+  // Ranks a bracket's candidates on a rung and lets the better third and the base go on; the base
+  // alone where no candidate gains. Where a
   // search was stopped, what is known of half the candidates is no reason to change the choice,
   // but better than nothing on the first rung.
   void promote(Bracket& bracket, std::size_t rung) {
@@ -258,7 +259,11 @@ class Search {
     if (missing > 0 && rung > 0) {
       return;
     }
+    const double base = ranking.front().second == 0 ? -ranking.front().first : kWorst;
     std::ranges::sort(ranking);
+    if (std::isfinite(base) && -ranking.front().first < base + kTuning.chain.least_gain) {
+      ranking = {{-base, 0}};  // the best of many is partly lucky: no gain
+    }
     bracket.best = ranking.front().second;
     bracket.rung = rung;
     bracket.score = std::isfinite(ranking.front().first) ? -ranking.front().first : kUnknown;

@@ -75,11 +75,12 @@ struct TuneResult {
 
 /// Random search with successive halving, for every axis on its own. The first rung of a
 /// ForwardChain of each log scores every candidate; the better third advances to the next rung,
-/// until the last. The base settings always advance, so the result never scores below the base.
-/// Candidates are ranked by their mean score over the logs, with equal weights; candidates given up
-/// or diverging on a log come last, and earlier draws win ties. The search is run for each
-/// combination of the shared settings, which can't differ between axes; the combination with the
-/// best mean over the axes wins.
+/// until the last. The base settings always advance, so the result never scores below the base;
+/// they advance alone, and win, where no candidate scores higher by 0.005 or more. Candidates are
+/// ranked by their mean score over the logs, with equal weights; candidates given up or diverging
+/// on a log come last, and earlier draws win ties. The search is run for each combination of the
+/// shared settings, which can't differ between axes; the combination with the best mean over the
+/// axes wins.
 ///
 /// `journal` provides and stores evaluations. Ensures: the result depends on problem, candidates,
 /// seed and most_iterations only, not on the processes, nor on the journal's content. A stopped

@@ -48,6 +48,15 @@ TEST(States, NamesTellTheAxis) {
   EXPECT_EQ(velocity_axis("twist.angular.w"), std::nullopt);
 }
 
+TEST(States, ADerivativeIsNamedAfterItsVelocity) {
+  using Names = std::vector<std::string_view>;
+  EXPECT_EQ(differentiated("udot"), (Names{"u"}));
+  EXPECT_EQ(differentiated("du"), (Names{"u"}));
+  EXPECT_EQ(differentiated("u_dot"), (Names{"u", "u_"}));
+  EXPECT_TRUE(differentiated("u").empty());
+  EXPECT_TRUE(differentiated("d").empty());
+}
+
 TEST(States, RefuseWhatIsNoInputNamingTheNearest) {
   const auto refusal = [](const char* states, std::size_t targets) {
     return message_of<InputError>([&] { find_states(states, kInputs, targets); });

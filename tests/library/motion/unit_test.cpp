@@ -52,6 +52,26 @@ TEST(Unit, WhatItPrintsItReads) {
   }
 }
 
+TEST(Unit, UnitsOfMotionHaveAFactorToTheSi) {
+  const auto in_si = [](const char* unit) {
+    const auto [si, factor] = Unit::parse(unit).in_si();
+    return std::pair(si.text(), factor);
+  };
+  using Si = std::pair<std::string, double>;
+  EXPECT_EQ(in_si("deg/s").first, "rad s^-1");
+  EXPECT_NEAR(in_si("deg/s").second, 0.0174533, 1e-7);
+  EXPECT_EQ(in_si("cm/s^2"), (Si{"m s^-2", 0.01}));
+  EXPECT_EQ(in_si("mm/s"), (Si{"m s^-1", 0.001}));
+  EXPECT_NEAR(in_si("km/h").second, 1.0 / 3.6, 1e-12);
+  EXPECT_EQ(in_si("knots").first, "m s^-1");
+  EXPECT_EQ(in_si("g"), (Si{"m s^-2", 9.80665}));
+  EXPECT_NEAR(in_si("rad/min").second, 1.0 / 60.0, 1e-12);
+  EXPECT_EQ(in_si("m/s"), (Si{"m s^-1", 1.0}));
+  for (const char* const of_commands : {"us", "rev/min", "rpm", "V", "%", "ms", "h"}) {
+    EXPECT_EQ(in_si(of_commands).second, 1.0) << of_commands;
+  }
+}
+
 TEST(Unit, SaysWhatIsWrongWithATextThatIsNone) {
   EXPECT_EQ(complaint("m/s2"), "'m/s2' is not a unit such as m/s^2: a power is written with '^'");
   EXPECT_NE(complaint("").find("it ends where a name is expected"), std::string::npos);

@@ -107,7 +107,29 @@ TEST_F(ReadLog, MessagesTellTheUnitsOfTheirColumns) {
                             "[log]\nrate = 10\n[log.states]\np = 'ATTITUDE:rollspeed'\n"
                             "phi = 'ATTITUDE:roll'\n[log.derived]\npdot = 'd(p)'\n"
                             "[log.units]\nphi = 'deg'\n");
-  EXPECT_EQ(log.units, (Units{{"p", "rad/s"}, {"pdot", "rad/s/s"}, {"phi", "deg"}}));
+  EXPECT_EQ(log.units, (Units{{"p", "rad/s"}, {"pdot", "rad/s/s"}, {"phi", "rad"}}));
+}
+
+TEST_F(ReadLog, UnitsOfMotionAreConvertedInTablesAndInSamples) {
+  const std::string csv = "t,u,n,udot\n0,100,1500,1\n500,200,1600,2\n1000,100,1450,1\n";
+  const std::string file = write("log.csv", csv);
+  log::Roles roles;
+  roles.units = {{"t", "ms"}, {"u", "cm/s"}, {"udot", "g"}, {"n", "us"}};
+  log::Dataset data = log::read_log({.path = file}, {}, roles).dataset();
+  EXPECT_EQ(data.times_s, (std::vector<double>{0.0, 0.5, 1.0}));
+  EXPECT_EQ(data.inputs, (std::vector<double>{1.0, 1500.0, 2.0, 1600.0, 1.0, 1450.0}));
+  EXPECT_EQ(data.targets, (std::vector<double>{9.80665, 2.0 * 9.80665, 9.80665}));
+  EXPECT_EQ(data.units.at("u").text(), "m s^-1");
+  EXPECT_EQ(data.units.at("n").text(), "us") << "a neutral pulse is told in us";
+
+  const log::Log sampled =
+      read(write("slow.csv", "t,b,d\n0,100,2\n0.5,150,2\n1,200,3\n1.5,250,2\n"),
+           "[log]\nrate = 2\ntime = 't'\ndegree = 1\nwindow = 2\n[log.states]\nu = 'b'\n"
+           "[log.commands]\nn = 'd'\n[log.derived]\nudot = 'd(u)'\n"
+           "[log.units]\nu = 'cm/s'\n");
+  EXPECT_NEAR(sampled.table.columns[1][1], 1.5, 1e-9);
+  EXPECT_NEAR(sampled.table.columns[3][1], 1.0, 1e-9) << "of the converted velocity";
+  EXPECT_EQ(sampled.units.at("udot"), "m s^-1/s");
 }
 
 TEST_F(ReadLog, ATableWithRawColumnsIsServedAlike) {

@@ -101,12 +101,47 @@ TEST(Roles, AColumnThatTellsNothingIsLeftOutWithTheReason) {
   EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
   EXPECT_EQ(roles.targets, (Names{"udot"})) << "a constant target has nothing to learn";
   EXPECT_EQ(log::left_out_text(table, {}),
+            "log.csv: wdot: is left out of the targets: 0 in every row\n"
             "log.csv: run: is left out of the inputs: a counter\n"
             "log.csv: row: is left out of the inputs: a counter\n"
             "log.csv: depth: is left out of the inputs: a position\n"
             "log.csv: w: is left out of the inputs: 0 in every row\n"
             "log.csv: copy: is left out of the inputs: equals n in every row\n"
             "log.csv: rps: is left out of the inputs: 9 in every row\n");
+}
+
+TEST(Roles, HeadingsBatteriesAndWhatIsIgnoredAreLeftOut) {
+  const log::Table table = rows_of("t,u,psi,battery_V,soc,th1,n,udot,ndot",
+                                   {"0,1,7,3,1,1,2,3,1", "1,2,8,1,2,4,3,1,4", "2,1,9,2,4,2,7,2,3"});
+  log::Roles given;
+  given.ignored = {"th1", "ndot"};
+  const log::Roles roles = log::guess_roles(table, given);
+  EXPECT_EQ(roles.inputs, (Names{"u", "n"}));
+  EXPECT_EQ(roles.targets, (Names{"udot"}));
+  EXPECT_EQ(log::left_out_text(table, given),
+            "log.csv: psi: is left out of the inputs: a heading\n"
+            "log.csv: battery_V: is left out of the inputs: of a battery\n"
+            "log.csv: soc: is left out of the inputs: of a battery\n"
+            "log.csv: th1: is left out of the inputs: ignored, as asked\n");
+  given.ignored = {"thr1"};
+  EXPECT_NE(message_of<InputError>([&] {
+              log::guess_roles(table, given);
+            }).find("thr1: there is no such column (did you mean 'th1'?)"),
+            std::string::npos);
+  given.ignored = {"u"};
+  given.inputs = {"u"};
+  EXPECT_THROW(log::guess_roles(table, given), InputError);
+}
+
+TEST(Roles, AConstantThatIsNamedAnInputIsLeftOutAloud) {
+  const log::Table table = rows_of("t,u,n,udot", {"0,1,7,3", "1,2,7,1", "2,1,7,2"});
+  log::Roles given;
+  given.inputs = {"u", "n"};
+  EXPECT_EQ(log::without_constants(table, given).inputs, (Names{"u"}));
+  EXPECT_EQ(log::left_out_text(table, given),
+            "log.csv: n: is left out of the inputs: 7 in every row\n");
+  given.inputs = {"n"};
+  EXPECT_EQ(log::without_constants(table, given).inputs, (Names{"n"})) << "else there is none";
 }
 
 TEST(Roles, WhatIsAskedForIsAnInput) {

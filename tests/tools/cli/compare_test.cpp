@@ -61,6 +61,19 @@ TEST_F(Compare, RecommendsLeastSquaresWhereTheTargetIsLinearInTheTerms) {
   EXPECT_NE(content("out/compare.html").find("least squares on physics terms"), std::string::npos);
 }
 
+TEST_F(Compare, KeepsTheDefaultsWhereNothingGainsAndNamesTheNextCommand) {
+  const std::string rows = "compare log.csv --split pieces --set buffer=100 --out out";
+  const Outcome outcome = testing::succeeded(run(rows));
+  EXPECT_NE(outcome.out.find("No gain: keep the defaults."), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("next:   kelpie learn log.csv --split pieces\n"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("mean over the stream"), std::string::npos) << outcome.out;
+  EXPECT_NE(run(rows + " --verbose").out.find("mean over the stream"), std::string::npos);
+  EXPECT_EQ(run(rows + " --quiet").out, "");
+  EXPECT_EQ(run(rows + " --json").out, content("out/compare.json"));
+  testing::expect_refused(run(rows + " --json --quiet"), "--quiet");
+}
+
 TEST_F(Compare, RecommendsTheMeanWhereTheInputsSayNothing) {
   RandomStream random(1, "noise");
   std::string text = "t,u,n,udot\n";
@@ -84,8 +97,9 @@ TEST_F(Compare, AVariantThatIsKelpieIsNoContenderAndOneThatCannotLearnIsLeftOut)
     twice += row + "," + (column == "n" ? "m" : column) + "\n";
   }
   write("twice.csv", twice);
-  const Outcome outcome = testing::succeeded(
-      run("compare twice.csv --inputs u,n,m --split pieces --set buffer=50 --set adapt=none --out out"));
+  const Outcome outcome =
+      testing::succeeded(run("compare twice.csv --inputs u,n,m --split pieces --set buffer=50 "
+                             "--set adapt=none --out out --verbose"));
   const nlohmann::json compared = json("out/compare.json");
   std::vector<std::string> names;
   for (const nlohmann::json& contender : compared["contenders"]) {

@@ -107,7 +107,7 @@ TEST_F(Identify, TellsTimeConstantsAndSeesThroughThem) {
   write("sent.csv", with_slow_rotors(content("log.csv")));
   const auto sway_inertia = [&](const std::string& options) {
     const Outcome outcome = testing::succeeded(
-        run("identify sent.csv --mass 70 --surge-added-mass 15 --out out " + options));
+        run("identify sent.csv --mass 70 --surge-added-mass 15 --verbose --out out " + options));
     EXPECT_EQ(outcome.out.find("Time constants of actuators") != std::string::npos,
               options.empty());
     const std::string yaml = content("out/parameters.yaml");

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cstdio>
+#include <sstream>
+#include <string>
 
 #include "cli/command.hpp"
 #include "support.hpp"
@@ -47,6 +52,25 @@ TEST_F(Inspect, DoesNotReplaceItsBag) {
                             "mission/a.mcap: --json: would overwrite");
     EXPECT_EQ(content("mission/a.mcap"), bag);
   }
+}
+
+TEST_F(Inspect, TellsMistakesWithTheRemedyAndSucceeds) {
+  std::istringstream rows(testing::little_log(1200));
+  std::string text;
+  std::string row;
+  for (int number = 0; std::getline(rows, row); ++number) {
+    double t = 0.0;
+    double u = 0.0;
+    double n = 0.0;
+    double a = 0.0;
+    const int found = std::sscanf(row.c_str(), "%lf,%lf,%lf,%lf", &t, &u, &n, &a);  // NOLINT
+    text += found == 4 ? fmt::format("{},{},{},{}\n", t, 100.0 * u, n, a) : row + "\n";
+  }
+  write("cm.csv", text);
+  const Outcome outcome = testing::succeeded(run("inspect cm.csv --json report.json"));
+  EXPECT_NE(outcome.out.find("MISTAKE: u is in cm/s, udot in m/s²"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(parsed("report.json")["mistakes"][0]["remedy"], "--units u=cm/s converts");
 }
 
 TEST_F(Inspect, AMissingBagIsTheUsersFault) {

@@ -120,9 +120,9 @@ TEST_F(Learn, ConfigFileThenSetOverThePreset) {
 TEST_F(Learn, CoefficientsAreShownWithTheUnitsGiven) {
   write("c.toml",
         "terms = 'u*|u|; n*|n|'\nlambda = 10\nfine = 0\nc = 0.1\n[log]\n"
-        "units = {u = 'm/s', n = 'rad/s', udot = 'cm/s^2'}\n");
-  const Outcome outcome =
-      testing::succeeded(run("learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out --verbose"));
+        "units = {u = 'm/s', n = 'rad/s', udot = 'mm/s^2'}\n");
+  const Outcome outcome = testing::succeeded(
+      run("learn log.csv --config c.toml --units n=rev/s,udot=m/s^2 --out out --verbose"));
   EXPECT_NE(outcome.out.find("udot in m/s²\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("m/rev²"), std::string::npos) << outcome.out;
   const auto result = parsed("out/result.json");

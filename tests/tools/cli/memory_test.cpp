@@ -107,7 +107,7 @@ TEST_F(Memory, BadInputIsRefusedAndNothingLost) {
   expect_refused("memory show m.json vdot:1", "there are udot:1");
   expect_refused("memory forget m.json udot:9", "there are udot:1");
   expect_refused("learn log.csv --inputs n,u --memory m.json", "m.json: inputs: are 'u, n' there");
-  expect_refused("learn log.csv --units u=km/s --memory m.json --set memory=0",
+  expect_refused("learn log.csv --units u=ft/s --memory m.json --set memory=0",
                  "m.json: udot: holds 1 models; the settings keep 0");
   EXPECT_EQ(content("m.json"), before);
   write("m.json", before.substr(0, before.size() / 2));

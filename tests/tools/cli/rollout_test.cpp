@@ -26,8 +26,16 @@ class RolloutCommand : public testing::CommandTest {
 };
 
 TEST_F(RolloutCommand, JudgesAModelOnHeldOutRows) {
-  const Outcome outcome = testing::succeeded(rollout("log.csv --horizons 5,1"));
-  EXPECT_NE(outcome.out.find("recursive least squares"), std::string::npos) << outcome.out;
+  const Outcome outcome = testing::succeeded(rollout("log.csv --horizons 5,1 --units u=m/s"));
+  EXPECT_NE(outcome.out.find("\nAfter 5 s: u within 0.0017 m s^-1 (root mean square)."),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("next:    kelpie export out/model.json --c model.c\n"),
+            std::string::npos);
+  EXPECT_EQ(outcome.out.find("recursive least squares"), std::string::npos) << outcome.out;
+  EXPECT_NE(rollout("log.csv --horizons 5,1 --verbose").out.find("recursive least squares"),
+            std::string::npos);
+  EXPECT_EQ(rollout("log.csv --horizons 5,1 --json").out, content("roll/result.json"));
   const auto json = parsed("roll/result.json");
   EXPECT_EQ(json["states"], nlohmann::json::array({"u"}));
   EXPECT_EQ(json["scores"][0]["horizons"][0]["seconds"], 1.0);

@@ -65,6 +65,10 @@ TEST_F(Study, HasTheFiguresOfLearnWhateverTheThreads) {
   const Outcome outcome = kelpie(folder_.path(), "study fleet.toml --threads 1");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
+  EXPECT_NE(outcome.out.find("\nvehicles: no cause of a change was found\n"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("\nnext:   kelpie study fleet.toml"), std::string::npos);
+  EXPECT_EQ(outcome.out.find("Learners, over all vehicles"), std::string::npos);
   ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --threads 3 --out three").exit_code, 0);
   EXPECT_EQ(without_times("out/study"), without_times("three"));
 

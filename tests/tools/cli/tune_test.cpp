@@ -55,7 +55,7 @@ class TuneCommand : public ::testing::Test {
 };
 
 TEST_F(TuneCommand, WritesSettingsThatLearnTakesAndTheSameBytesWhenRunAgain) {
-  ASSERT_EQ(tune("--threads 2"), 0) << said();
+  ASSERT_EQ(tune("--threads 2 --verbose"), 0) << said();
   EXPECT_NE(said().find("paper (Table I)"), std::string::npos);
   const std::string toml = content(out() / "tuned.toml");
   const std::string json = content(out() / "tune.json");
@@ -74,6 +74,15 @@ TEST_F(TuneCommand, WritesSettingsThatLearnTakesAndTheSameBytesWhenRunAgain) {
       << said();
 }
 
+TEST_F(TuneCommand, SaysWhetherThereIsAGainAndWhatToRunNext) {
+  ASSERT_EQ(tune("--search k=10:10.0001"), 0) << said();
+  EXPECT_NE(said().find("No gain: keep the defaults."), std::string::npos) << said();
+  EXPECT_NE(said().find("/tuned.toml --split tail\n"), std::string::npos) << said();
+  EXPECT_EQ(said().find("paper (Table I)"), std::string::npos) << said();
+  EXPECT_EQ(tune("--search k=10:10.0001 --quiet"), 0);
+  EXPECT_EQ(said().find("Searched"), std::string::npos) << said();
+}
+
 TEST_F(TuneCommand, RefusesAJournalOfAnotherSearch) {
   ASSERT_EQ(tune(""), 0) << said();
   EXPECT_EQ(tune("--seed 2"), 2);
@@ -83,7 +92,7 @@ TEST_F(TuneCommand, RefusesAJournalOfAnotherSearch) {
 TEST_F(TuneCommand, TunesOnSeveralLogsAndTellsTheScoresOfEach) {
   write_log("other.csv", "u,thruster,udot", 300, 2.0);
   const std::string other = (folder_ / "other.csv").string();
-  ASSERT_EQ(tune(other + " --set learner=svr"), 0) << said();
+  ASSERT_EQ(tune(other + " --set learner=svr --verbose"), 0) << said();
   EXPECT_NE(said().find("Scores by log"), std::string::npos) << said();
   const auto json = nlohmann::json::parse(content(out() / "tune.json"));
   ASSERT_EQ(json["logs"].size(), 2U);

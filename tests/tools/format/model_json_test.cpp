@@ -177,7 +177,7 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   EXPECT_EQ(message_of<InputError>([] {
               format::parse_model_json("{\"format\": ", "m.json");
             }).substr(0, 26),
-            "m.json: file: is not JSON:");
+            "m.json: file: is not JSON (");
   auto bad = good;
   bad["format"] = "other";
   EXPECT_EQ(refusal(bad), "m.json: format: has to be 'kelpie-model'");

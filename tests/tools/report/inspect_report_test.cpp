@@ -34,7 +34,7 @@ TEST(InspectReport, TheTableNamesTopicsWholeWithTheirRangesAndWhyThereAreNone) {
 
 TEST(InspectReport, TheJsonHoldsTheSameNumbers) {
   const auto json =
-      nlohmann::json::parse(report::inspect_json(two_topics(), {}, std::nullopt, "small.mcap"));
+      nlohmann::json::parse(report::inspect_json(two_topics(), {}, std::nullopt, {}, "small.mcap"));
   EXPECT_EQ(json.at("messages"), 9);
   const auto& odom = json.at("topics").at(0);
   EXPECT_EQ(odom.at("name"), "/odom");
@@ -64,7 +64,7 @@ TEST(InspectReport, SaysWhatIsOpenAndWhetherCommandsExplainAnything) {
   draft.open = {"commands: /a, or /b: which of them?"};
   EXPECT_TRUE(says("open: commands: /a, or /b"));
   const auto json =
-      nlohmann::json::parse(report::inspect_json(two_topics(), draft, look, "small.mcap"));
+      nlohmann::json::parse(report::inspect_json(two_topics(), draft, look, {}, "small.mcap"));
   EXPECT_EQ(json.at("draft").at("complete"), false);
   EXPECT_EQ(json.at("first_look").at("axes").at(0).at("r2"), -0.5);
 }

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 #include "model/axis_list.hpp"
@@ -98,6 +100,38 @@ TEST_F(Comparison, ContendersHaveWhatTheyHaveAlone) {
     EXPECT_EQ(of(4).prequential_r2, axis.baselines.last_value.prequential_r2);
     EXPECT_TRUE(std::isnan(of(4).r2_final)) << "it tells nothing of held-out rows";
   }
+}
+
+TEST_F(Comparison, InnerSplitsAreOfTheTrainingRowsAlone) {
+  const std::vector<study::Split> inner = study::inner_splits(split_);
+  ASSERT_EQ(inner.size(), 2U);
+  for (const study::Split& one : inner) {
+    std::vector<std::size_t> rows = one.training;
+    rows.insert(rows.end(), one.held_out.begin(), one.held_out.end());
+    std::ranges::sort(rows);
+    EXPECT_EQ(rows, split_.training) << one.label;
+    EXPECT_NEAR(static_cast<double>(one.held_out.size()), 0.2 * static_cast<double>(rows.size()),
+                5.0);  // pieces are whole
+  }
+  EXPECT_GT(inner[1].held_out.front(), inner[1].training.back());
+  EXPECT_TRUE(study::inner_splits({.label = "", .training = {0, 1, 2}, .held_out = {}}).empty());
+}
+
+TEST_F(Comparison, AVariantIsBetterWhereItGainsOnEverySplit) {
+  const auto contender = [&](ContenderKind kind, auto make) {
+    return study::Contender{kind, "contender", [this, make] { return make(data_); }};
+  };
+  const auto compared = [&](auto kelpie, auto variant) {
+    return study::compare(
+        data_, split_,
+        {contender(ContenderKind::kelpie, kelpie), contender(ContenderKind::variant, variant)}, {});
+  };
+  const study::Comparison gains = compared(study::make_mean, study::make_least_squares);
+  EXPECT_EQ(gains.contests[1].inner_gains.size(), 2U);
+  EXPECT_EQ(gains.better_variant(), &gains.contests[1]);
+  const study::Comparison loses = compared(study::make_least_squares, study::make_mean);
+  EXPECT_TRUE(loses.contests[1].inner_gains.empty()) << "nothing is learned for it";
+  EXPECT_EQ(loses.better_variant(), nullptr);
 }
 
 TEST_F(Comparison, OneStepAheadIsJudgedOnTheSamplesThatAllPredicted) {

@@ -7,7 +7,7 @@
 
 #include "log/dataset.hpp"
 
-namespace kelpie::study {
+namespace kelpie::log {
 
 /// How a target goes with the slope of a velocity over the same windows of time.
 struct TargetCheck {
@@ -22,16 +22,27 @@ struct TargetCheck {
 /// the input that the target is named after (udot, u_dot or du beside u). Windows last 1 s and 5 s,
 /// at least five rows; the length with the larger correlation counts. A target without a velocity,
 /// without motion, or with fewer than 20 windows has no check. Cost O(rows). Allocates.
-std::vector<TargetCheck> check_targets(const log::Dataset& data, const std::string& states);
+std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states);
 
-/// The mistakes that the checks show, a sentence each with the remedy: units (degrees, cm, g,
+/// What cannot be right in a log, or hardly.
+struct Mistake {
+  std::string what;        ///< in words, with the figures that show the mistake
+  std::string remedy;      ///< an option of the command line where an option helps
+  bool is_refused = true;  ///< false: worth a word, but the log can be learned
+};
+
+/// "rdot …; --units r=deg/s converts".
+std::string mistake_text(const Mistake& mistake);
+
+/// Mistakes of targets that cannot be the accelerations of their velocities: units (degrees, cm, g,
 /// km/h, knots, clocks in ms, µs or ns), a rate or clock that is wrong for all targets, a sign, a
 /// target that is late. A target whose correlation with the slopes is below 0.8 shows no mistake,
 /// since noise and currents do the same; nor does a factor up to five that no known unit explains,
-/// since filters do the same.
-std::vector<std::string> mistakes(const std::vector<TargetCheck>& checks);
+/// since filters do the same. Cost O(rows). Allocates. Throws what find_states() throws.
+std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states);
 
-/// Throws InputError (file, "targets") with the mistakes of a log, unless there is none.
-void require_plausible(const log::Dataset& data, const std::string& states);
+/// Mistakes of the clock: stamps equal to the stamp before (refused where more than 30 % are),
+/// ten minutes without a row, more than 200 rows per second. Cost O(rows). Allocates.
+std::vector<Mistake> clock_mistakes(const Dataset& data);
 
-}  // namespace kelpie::study
+}  // namespace kelpie::log

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "study/plausibility.hpp"
+#include "log/plausibility.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,6 +27,7 @@ log::Dataset drive(double noise = 0.1) {
   data.source = "log.csv";
   data.input_names = {"u", "r", "n"};
   data.target_names = {"udot", "rdot"};
+  data.time_column = "t";
   data.rate_hz = kRate;
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -75,12 +76,16 @@ log::Dataset with_clock(double factor) {
   return data;
 }
 
-std::string mistake_of(const log::Dataset& data) {
+std::string text_of(const std::vector<log::Mistake>& mistakes) {
   std::string text;
-  for (const std::string& one : study::mistakes(study::check_targets(data, "auto"))) {
-    text += one + "\n";
+  for (const log::Mistake& one : mistakes) {
+    text += log::mistake_text(one) + "\n";
   }
   return text;
+}
+
+std::string mistake_of(const log::Dataset& data) {
+  return text_of(log::target_mistakes(data, "auto"));
 }
 
 void expect_mistake(const log::Dataset& data, const std::string& words) {
@@ -90,7 +95,7 @@ void expect_mistake(const log::Dataset& data, const std::string& words) {
 
 TEST(Plausibility, AccelerationsOfTheVelocitiesAreNoMistake) {
   EXPECT_EQ(mistake_of(drive()), "");
-  EXPECT_NO_THROW(study::require_plausible(drive(), "auto"));
+  EXPECT_TRUE(log::clock_mistakes(drive()).empty());
 }
 
 TEST(Plausibility, NoiseIsNoMistake) {
@@ -98,19 +103,24 @@ TEST(Plausibility, NoiseIsNoMistake) {
 }
 
 TEST(Plausibility, NamesUnits) {
-  expect_mistake(with_input(1, kDegree), "r is in degrees per second, rdot in rad/s²");
+  expect_mistake(with_input(1, kDegree),
+                 "r is in degrees per second, rdot in rad/s² (rdot is 0.01");
+  expect_mistake(with_input(1, kDegree), "; --units r=deg/s converts");
   expect_mistake(with_target(1, kDegree), "rdot is in degrees per second squared, r in rad/s");
   expect_mistake(with_input(0, 100.0), "u is in cm/s, udot in m/s²");
   expect_mistake(with_target(0, 1.0 / 9.80665), "udot is in g, u in m/s");
   expect_mistake(with_input(0, 3.6), "u is in km/h, udot in m/s²");
   expect_mistake(with_input(0, 1.0 / 0.5144), "u is in knots, udot in m/s²");
-  expect_mistake(with_target(0, 7.0), "udot is 6.93 times as large as the slope of u: the two have different units");
+  expect_mistake(with_target(0, 7.0),
+                 "udot is 6.93 times as large as the slope of u: the two have different units");
 }
 
 TEST(Plausibility, NamesClocks) {
   expect_mistake(with_clock(1e3), "time stamps are in ms");
+  expect_mistake(with_clock(1e3), "; --units t=ms converts the stamps");
   expect_mistake(with_clock(1e9), "time stamps are in ns");
   expect_mistake(with_clock(2.5), "2.5 times as many rows per second as said");
+  expect_mistake(with_clock(2.5), "; --rate 5");
 }
 
 TEST(Plausibility, NamesSigns) {
@@ -132,7 +142,7 @@ TEST(Plausibility, AColumnWithoutAVelocityHasNoCheck) {
   log::Dataset data = with_target(0, 100.0);
   data.target_names = {"force", "moment"};
   data.input_names = {"a", "b", "n"};
-  EXPECT_TRUE(study::check_targets(data, "auto").empty());
+  EXPECT_TRUE(log::check_targets(data, "auto").empty());
 }
 
 TEST(Plausibility, AGapOrAChangeOfConfigurationIsNoMotion) {
@@ -145,11 +155,33 @@ TEST(Plausibility, AGapOrAChangeOfConfigurationIsNoMotion) {
   EXPECT_EQ(mistake_of(data), "");
 }
 
-TEST(Plausibility, RefusesWithTheRemedy) {
-  const std::string message = testing::message_of<InputError>(
-      [] { study::require_plausible(with_input(1, kDegree), "auto"); });
-  EXPECT_EQ(message.substr(0, 32), "log.csv: targets: r is in degree");
-  EXPECT_NE(message.find("--accept implausible"), std::string::npos);
+TEST(Plausibility, TellsOfRepeatedStampsAndRefusesMany) {
+  log::Dataset data = drive();
+  for (std::size_t row = 500; row < 511; ++row) {
+    data.times_s[row] = data.times_s[500];
+  }
+  std::vector<log::Mistake> found = log::clock_mistakes(data);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().what,
+            "10 of 1500 rows have the time stamp of the row before, the first at 100 s");
+  EXPECT_FALSE(found.front().is_refused);
+  for (std::size_t row = 0; row < kRows; ++row) {
+    data.times_s[row] = std::floor(static_cast<double>(row) / kRate);  // whole seconds
+  }
+  found = log::clock_mistakes(data);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found.front().is_refused);
+}
+
+TEST(Plausibility, TellsOfAGapAndOfAHighRate) {
+  log::Dataset data = drive();
+  for (std::size_t row = kRows / 2; row < kRows; ++row) {
+    data.times_s[row] += 3600.0;
+  }
+  EXPECT_EQ(text_of(log::clock_mistakes(data)).substr(0, 34), "no rows for 60 min after 149.8 s; ");
+  data = drive();
+  data.rate_hz = 2000.0;
+  EXPECT_EQ(text_of(log::clock_mistakes(data)).substr(0, 25), "2000 rows per second are ");
 }
 
 }  // namespace

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "core/quantile.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/tuning.hpp"
+#include "motion/states.hpp"
+
+namespace kelpie::log {
+namespace {
+
+constexpr const auto& kLimits = kTuning.plausibility;
+
+// A factor between a target and the slope of its velocity, and the unit of one of the two that
+// explains the factor.
+struct KnownFactor {
+  double ratio;
+  const char* what;     // {0}: the velocity, {1}: the target
+  const char* options;  // for --units
+};
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kGravity = 9.80665;
+constexpr std::array kUnits = std::to_array<KnownFactor>({
+    {kDegree, "{0} is in degrees per second, {1} in rad/s²", "{0}=deg/s"},
+    {1.0 / kDegree, "{1} is in degrees per second squared, {0} in rad/s", "{1}=deg/s^2"},
+    {0.01, "{0} is in cm/s, {1} in m/s²", "{0}=cm/s"},
+    {100.0, "{1} is in cm/s², {0} in m/s", "{1}=cm/s^2"},
+    {1e-3, "{0} is in mm/s, {1} in m/s²", "{0}=mm/s"},
+    {1.0 / kGravity, "{1} is in g, {0} in m/s", "{1}=g"},
+    {1.0 / 3.6, "{0} is in km/h, {1} in m/s²", "{0}=km/h"},
+    {1852.0 / 3600.0, "{0} is in knots, {1} in m/s²", "{0}=knots"},
+});
+
+// A unit of time stamps, which all targets share.
+struct KnownClock {
+  double ratio;
+  const char* unit;
+};
+constexpr std::array kClocks =
+    std::to_array<KnownClock>({{1e3, "ms"}, {1e6, "µs"}, {1e9, "ns"}, {1.0 / 60.0, "min"}});
+
+bool near(double ratio, double known) {
+  return std::abs(std::log(ratio / known)) <= std::log1p(kLimits.near);
+}
+
+bool is_plain(double ratio) {
+  return ratio >= kLimits.least_ratio && ratio <= kLimits.most_ratio;
+}
+
+// Pairs of slopes of a velocity and means of a target over windows without a gap.
+class Windows {
+ public:
+  Windows(const Dataset& data, std::size_t velocity, std::size_t target)
+      : data_(data), velocity_(velocity), target_(target) {}
+
+  /// Correlation and signed ratio for windows of `length` rows, the target read `late` rows later;
+  /// empty for too few windows, or without motion.
+  std::optional<std::pair<double, double>> compare(std::size_t length, std::ptrdiff_t late) const {
+    double n = 0.0;
+    double mean_x = 0.0;
+    double mean_y = 0.0;
+    double xx = 0.0;
+    double yy = 0.0;
+    double xy = 0.0;
+    const auto rows = static_cast<std::ptrdiff_t>(data_.rows());
+    const auto step = static_cast<std::ptrdiff_t>(length);
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, -late);
+         i + step + std::max<std::ptrdiff_t>(0, late) < rows; i += step) {
+      const std::optional<double> x = slope(i, step);
+      const std::optional<double> y = mean(i + late, step);
+      if (!x || !y) {
+        continue;
+      }
+      n += 1.0;
+      const double dx = *x - mean_x;
+      const double dy = *y - mean_y;
+      mean_x += dx / n;
+      mean_y += dy / n;
+      xx += dx * (*x - mean_x);
+      yy += dy * (*y - mean_y);
+      xy += dx * (*y - mean_y);
+    }
+    if (n < kLimits.least_windows || !(xx > 0.0) || !(yy > 0.0)) {
+      return std::nullopt;
+    }
+    const double correlation = xy / std::sqrt(xx * yy);
+    return std::pair(correlation, std::copysign(std::sqrt(yy / xx), correlation));
+  }
+
+ private:
+  std::optional<double> span_s(std::ptrdiff_t first, std::ptrdiff_t step) const {
+    const auto a = static_cast<std::size_t>(first);
+    const auto b = static_cast<std::size_t>(first + step);
+    const double seconds = data_.times_s[b] - data_.times_s[a];
+    const double usual = static_cast<double>(step) / data_.rate_hz;
+    const bool whole = seconds > 0.0 && seconds <= kLimits.longest_window * usual &&
+                       data_.configurations[a] == data_.configurations[b];
+    return whole ? std::optional(seconds) : std::nullopt;
+  }
+
+  std::optional<double> slope(std::ptrdiff_t first, std::ptrdiff_t step) const {
+    const std::optional<double> seconds = span_s(first, step);
+    const auto value = [&](std::ptrdiff_t row) {
+      return data_.input(static_cast<std::size_t>(row))[velocity_];
+    };
+    return seconds ? std::optional((value(first + step) - value(first)) / *seconds) : std::nullopt;
+  }
+
+  std::optional<double> mean(std::ptrdiff_t first, std::ptrdiff_t step) const {
+    if (!span_s(first, step)) {
+      return std::nullopt;
+    }
+    const auto value = [&](std::ptrdiff_t row) {
+      return data_.target(static_cast<std::size_t>(row))[target_];
+    };
+    double sum = 0.5 * (value(first) + value(first + step));
+    for (std::ptrdiff_t row = first + 1; row < first + step; ++row) {
+      sum += value(row);
+    }
+    return sum / static_cast<double>(step);
+  }
+
+  const Dataset& data_;
+  std::size_t velocity_;
+  std::size_t target_;
+};
+
+std::size_t rows_in(double seconds, double rate_hz) {
+  return static_cast<std::size_t>(std::max(1.0, std::round(seconds * rate_hz)));
+}
+
+// The shift that makes a target follow its velocity where the target as it stands does not.
+void find_shift(const Windows& windows, std::size_t length, double rate_hz, TargetCheck& check) {
+  const auto most = static_cast<std::ptrdiff_t>(rows_in(kLimits.most_late_s, rate_hz));
+  const auto step = static_cast<std::ptrdiff_t>(rows_in(kLimits.late_step_s, rate_hz));
+  double best = std::max(kLimits.late_correlation, std::abs(check.correlation) + kLimits.late_gain);
+  for (std::ptrdiff_t late = -most; late <= most; late += step) {
+    const auto pair = windows.compare(length, late);
+    if (pair && pair->first > best && is_plain(pair->second)) {
+      best = pair->first;
+      check.late_s = static_cast<double>(late) / rate_hz;
+    }
+  }
+}
+
+std::optional<TargetCheck> check_target(const Dataset& data, std::size_t velocity,
+                                        std::size_t target) {
+  TargetCheck check{.target = data.target_names[target], .velocity = data.input_names[velocity]};
+  const Windows windows(data, velocity, target);
+  bool measured = false;
+  std::size_t shortest = 0;
+  for (const double seconds : kLimits.windows_s) {
+    const std::size_t length = std::max(kLimits.least_rows, rows_in(seconds, data.rate_hz));
+    shortest = shortest == 0 ? length : shortest;
+    const auto pair = windows.compare(length, 0);
+    if (pair && std::abs(pair->first) > std::abs(check.correlation)) {
+      std::tie(check.correlation, check.ratio) = *pair;
+      measured = true;
+    }
+  }
+  if (measured && std::abs(check.correlation) < kLimits.unrelated) {
+    find_shift(windows, shortest, data.rate_hz, check);
+  }
+  return measured ? std::optional(check) : std::nullopt;
+}
+
+// The input whose derivative the target is.
+std::optional<std::size_t> velocity_of(const Dataset& data, std::span<const std::size_t> states,
+                                       std::size_t target) {
+  if (!states.empty()) {
+    return states[target];
+  }
+  for (const std::string_view name : differentiated(data.target_names[target])) {
+    const auto found = std::ranges::find(data.input_names, name);
+    if (found != data.input_names.end()) {
+      return static_cast<std::size_t>(found - data.input_names.begin());
+    }
+  }
+  return std::nullopt;
+}
+
+bool shows_ratio(const TargetCheck& check) {
+  return std::abs(check.correlation) >= kLimits.least_correlation;
+}
+
+// A factor that all targets share is the clock's.
+std::optional<Mistake> clock_mistake(const Dataset& data, const std::vector<TargetCheck>& checks) {
+  std::vector<double> ratios;
+  for (const TargetCheck& check : checks) {
+    if (shows_ratio(check)) {
+      ratios.push_back(std::abs(check.ratio));
+    }
+  }
+  if (ratios.empty()) {
+    return std::nullopt;
+  }
+  const double ratio = quantile(ratios, 0.5);
+  const bool certain = std::ranges::min(ratios) > kLimits.certain_clock;
+  const bool shared = std::ranges::all_of(ratios, [&](double one) { return near(one, ratio); });
+  // Of one target a small factor tells of units as well.
+  if (!certain && (ratios.size() == 1 || !shared || is_plain(ratio))) {
+    return std::nullopt;
+  }
+  const std::string why =
+      fmt::format("all targets are {:.3g} times as large as the slopes of their velocities", ratio);
+  for (const KnownClock& clock : kClocks) {
+    const bool fits = certain ? std::abs(std::log(ratio / clock.ratio)) < std::log(kLimits.clock)
+                              : near(ratio, clock.ratio);
+    if (!data.time_column.empty() && fits) {
+      return Mistake{
+          fmt::format("time stamps are in {} ({})", clock.unit, why),
+          fmt::format("--units {}={} converts the stamps", data.time_column, clock.unit)};
+    }
+  }
+  return Mistake{
+      fmt::format("{}: the log has {:.3g} times as many rows per second as said", why, ratio),
+      fmt::format("--rate {:.3g} says so", data.rate_hz * ratio)};
+}
+
+std::optional<Mistake> unit_mistake(const TargetCheck& check) {
+  const double ratio = std::abs(check.ratio);
+  const std::string how_large = fmt::format("{} is {:.3g} times as large as the slope of {}",
+                                            check.target, ratio, check.velocity);
+  for (const KnownFactor& unit : kUnits) {
+    if (near(ratio, unit.ratio)) {
+      const auto filled = [&](const char* text) {
+        return fmt::format(fmt::runtime(text), check.velocity, check.target);
+      };
+      return Mistake{fmt::format("{} ({})", filled(unit.what), how_large),
+                     fmt::format("--units {} converts", filled(unit.options))};
+    }
+  }
+  // Filters of a vehicle at rest shrink targets, too.
+  if (ratio >= kLimits.least_unknown && ratio <= kLimits.most_unknown) {
+    return std::nullopt;
+  }
+  return Mistake{how_large + ": the two have different units",
+                 fmt::format("--units {}=… converts to the SI", check.velocity)};
+}
+
+void add_mistakes_of(const TargetCheck& check, bool is_clock_right, std::vector<Mistake>& found) {
+  if (check.late_s != 0.0) {
+    found.push_back({fmt::format("{} comes {:.3g} s {} than {} changes: the two have different "
+                                 "clocks",
+                                 check.target, std::abs(check.late_s),
+                                 check.late_s > 0.0 ? "later" : "earlier", check.velocity),
+                     "take the acceleration from the velocity by [log.derived] "
+                     "(docs/from_topics.md), or shift the column"});
+  }
+  if (!shows_ratio(check)) {
+    return;
+  }
+  if (is_clock_right && !is_plain(std::abs(check.ratio))) {
+    if (auto unit = unit_mistake(check)) {
+      found.push_back(*std::move(unit));
+    }
+  }
+  if (check.ratio < 0.0) {
+    found.push_back({fmt::format("{} has the sign opposite to the slope of {}: the axes of the two "
+                                 "differ (NED and ENU, or FRD and FLU)",
+                                 check.target, check.velocity),
+                     fmt::format("change the sign of {} or of {}", check.target, check.velocity)});
+  }
+}
+
+// Rows with the stamp of the row before.
+std::optional<Mistake> repeated_stamps(const Dataset& data) {
+  std::size_t count = 0;
+  double first_s = 0.0;
+  for (std::size_t row = 1; row < data.rows(); ++row) {
+    if (data.times_s[row] == data.times_s[row - 1]) {
+      first_s = count == 0 ? data.times_s[row] : first_s;
+      ++count;
+    }
+  }
+  if (count == 0) {
+    return std::nullopt;
+  }
+  const bool often =
+      static_cast<double>(count) > kLimits.most_repeated * static_cast<double>(data.rows());
+  return Mistake{
+      fmt::format("{} of {} rows have the time stamp of the row before, the first at {:g} s", count,
+                  data.rows(), first_s),
+      often ? "stamps are rounded or rows are repeated: give the rows per second by --rate, or "
+              "remove the repeated rows"
+            : "remove the repeated rows",
+      often};
+}
+
+std::optional<Mistake> long_gap(const Dataset& data) {
+  double longest_s = kLimits.longest_gap_s;
+  std::optional<std::size_t> before;
+  for (std::size_t row = 1; row < data.rows(); ++row) {
+    const double gap_s = data.times_s[row] - data.times_s[row - 1];
+    if (gap_s > longest_s && gap_s * data.rate_hz > kLimits.gap_rows) {
+      longest_s = gap_s;
+      before = row - 1;
+    }
+  }
+  if (!before) {
+    return std::nullopt;
+  }
+  return Mistake{
+      fmt::format("no rows for {:.3g} min after {:g} s", longest_s / 60.0, data.times_s[*before]),
+      "a vehicle that was changed meanwhile has to be learned anew from there: cut the "
+      "log",
+      false};
+}
+
+}  // namespace
+
+std::vector<Mistake> clock_mistakes(const Dataset& data) {
+  std::vector<Mistake> found;
+  for (auto& mistake : {repeated_stamps(data), long_gap(data)}) {
+    if (mistake) {
+      found.push_back(*mistake);
+    }
+  }
+  if (data.rate_hz > kLimits.fastest_hz) {
+    found.push_back({fmt::format("{:.4g} rows per second are more than a vehicle's motion has to "
+                                 "tell",
+                                 data.rate_hz),
+                     "`kelpie inspect LOG --template log.toml` writes a configuration with a "
+                     "lower rate, for --config log.toml",
+                     false});
+  }
+  return found;
+}
+
+std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states) {
+  const std::vector<std::size_t> found =
+      find_states(states, data.input_names, data.target_names.size());
+  std::vector<TargetCheck> checks;
+  for (std::size_t target = 0; target < data.target_names.size(); ++target) {
+    if (const auto velocity = velocity_of(data, found, target)) {
+      if (const auto check = check_target(data, *velocity, target)) {
+        checks.push_back(*check);
+      }
+    }
+  }
+  return checks;
+}
+
+std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states) {
+  const std::vector<TargetCheck> checks = check_targets(data, states);
+  std::vector<Mistake> found;
+  const std::optional<Mistake> clock = clock_mistake(data, checks);
+  if (clock) {
+    found.push_back(*clock);
+  }
+  for (const TargetCheck& check : checks) {
+    add_mistakes_of(check, !clock, found);
+  }
+  return found;
+}
+
+std::string mistake_text(const Mistake& mistake) {
+  return mistake.what + "; " + mistake.remedy;
+}
+
+}  // namespace kelpie::log
