@@ -112,7 +112,10 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
   }
   const Start* const likely = most_evident();
   if (likely != nullptr && likely->evidence > threshold()) {
-    return believe(youngest_with(kChange.alike * likely->evidence), t);
+    Start& start = youngest_with(kChange.alike * likely->evidence);
+    if (start.evidence > kChange.clear * start.samples) {
+      return believe(start, t);
+    }
   }
   learn(y);
   begin_start(t);
@@ -188,6 +191,7 @@ void ChangeMonitor::begin_start(double t) {
   free->begun_s = t;
   free->life_s = kChange.life_s * static_cast<double>(1 << doublings);
   free->evidence = 0.0;
+  free->samples = 0.0;
   free->peak = 0.0;
   free->likelihood = 0.0;
   std::ranges::copy(fit_.theta(), free->theta.begin());
@@ -284,6 +288,7 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
         start.tau[a];
     const double gained = log_density(error, noise + unknown) - log_density(without, noise);
     start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
+    start.samples += 1.0 / start.tau[a];
     const double weight = robust_weight(error, noise + unknown) / start.tau[a];
     const double scale = 1.0 / (noise / weight + unknown);
     size += (scale * error) * gain;
@@ -419,7 +424,7 @@ void ChangeMonitor::Start::visit(Archive& archive) {
   if (!alive) {
     return;
   }
-  for (double* const number : {&begun_s, &life_s, &evidence, &peak, &likelihood}) {
+  for (double* const number : {&begun_s, &life_s, &evidence, &samples, &peak, &likelihood}) {
     archive.number(*number);
   }
   for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {

@@ -31,7 +31,8 @@ namespace kelpie {
 /// is the logarithm of its Bayes factor against the fit (Kass & Raftery 1995), from predictions
 /// made before a row is learned, summed over rows and axes. τ rows count as one independent sample
 /// (ErrorCorrelation), and no sample counts more than 1.5 nats. A change is believed where the
-/// evidence exceeds 40 nats and twice the largest evidence of starts without a change.
+/// evidence exceeds 40 nats and twice the largest evidence of starts without a change, and 0.45
+/// nats per independent sample: slow drifts, which a model follows anyway, gain less.
 ///
 /// From then on the fit stands still, the start goes on learning for a minute, and the coefficients
 /// follow. Another minute later the vehicle with the change is the vehicle without a change.
@@ -89,6 +90,7 @@ class ChangeMonitor {
     double begun_s = 0.0;
     double life_s = 0.0;
     double evidence = 0.0;           ///< [nats]
+    double samples = 0.0;            ///< independent samples so far
     double peak = 0.0;               ///< largest evidence so far [nats]
     double likelihood = 0.0;         ///< of all sizes together, over no change [nats]
     std::vector<double> theta;       ///< Θ₀, axis after axis

@@ -116,6 +116,7 @@ inline constexpr struct ModelTuning {
     double clip_nats = 1.5;          ///< largest evidence of a sample; from 0.8, 1.5, 3
     double enough = 40.0;            ///< nats; without a change up to 39
     double over_usual = 2.0;         ///< times the largest evidence of former starts; from 1.5, 2
+    double clear = 0.45;             ///< nats per sample: 40 % of the errors' variance is left
     double usual_memory_s = 1800.0;  ///< s, of this evidence; by hand
     double samples_per_term = 5.0;   ///< independent samples of a vehicle that is known; by hand
     double alike = 0.8;              ///< share of the largest evidence that tells as much; by hand
