@@ -163,7 +163,9 @@ SignalVerdict SampleStream::State::feed(std::size_t source, double stamp_s, doub
     return SignalVerdict::no_stamp;
   }
   follow_clock(stamp_s);
-  const SignalVerdict heard = take(route.to, stamp_s, route.sign * value);
+  const StreamPlan::Source& from = plan_.sources[source];
+  const double scaled = from.about + from.scale * (value - from.about);
+  const SignalVerdict heard = take(route.to, stamp_s, route.sign * scaled);
   settle_turns();
   settle_arm();
   return heard;

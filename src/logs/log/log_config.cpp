@@ -75,6 +75,7 @@ class LogConfigReader {
         {"units", [&](const TomlNode& value) { read_units(value); }},
         {"states", [&](const TomlNode& value) { read_sources(value, Interpolation::line); }},
         {"commands", [&](const TomlNode& value) { read_sources(value, Interpolation::hold); }},
+        {"scale", [&](const TomlNode& value) { read_scales(value); }},
         {"actuators", [&](const TomlNode& value) { read_actuators(value); }},
         {"derived", [&](const TomlNode& value) { read_derived(value); }},
         {"clock",
@@ -82,6 +83,7 @@ class LogConfigReader {
            config_.clock =
                choice(value, {"receive", "header"}) == 0 ? bag::Clock::receive : bag::Clock::header;
          }},
+        {"armed_only", [&](const TomlNode& value) { config_.armed_only = value.flag(); }},
         {"messages",
          [&](const TomlNode& value) {
            config_.messages =
@@ -158,6 +160,24 @@ class LogConfigReader {
            .from = source.text("a topic and field, as in \"/odom:twist.twist.linear.x\""),
            .between = between});
       config_.places.emplace(plan().sources.back().from, source.place());
+    }
+  }
+
+  // phi = 0.01745, m2 = {by = -1, about = 1500}
+  void read_scales(const file::TomlNode& value) {
+    for (const file::TomlNode& scale :
+         value.members("a table of factors, as in {phi = 0.01745, m2 = {by = -1, about = 1500}}")) {
+      SamplingPlan::Source& source = require_source(scale, scale.key());
+      const bool is_table = scale.type() == file::TomlNode::Type::table;
+      if (is_table) {
+        scale.table({"by", "about"});
+        source.about = scale.has("about") ? scale["about"].number() : 0.0;
+      }
+      source.scale =
+          is_table ? scale["by"].number() : scale.number("a factor, or a table by, about");
+      if (!std::isfinite(source.scale) || source.scale == 0.0 || !std::isfinite(source.about)) {
+        scale.refuse("has to be finite, and the factor not 0");
+      }
     }
   }
 
