@@ -108,6 +108,9 @@ void AutopilotState::hear_dataflash(const Known& of, std::span<const std::byte> 
     if (!name.empty()) {
       parameters_[name] = number_in(of.type, "Value", message);
     }
+    if (name == "LOG_DISARMED" && parameters_[name] > 0.0 && !is_armed_) {
+      hear_armed(false);  // such a log begins before the motors are armed, others with arming
+    }
     return;
   }
   const bool is_arm = of.kind == Kind::arm;

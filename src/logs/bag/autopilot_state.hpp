@@ -24,8 +24,9 @@ class AutopilotState {
 
   /// Empty: the autopilot has not said so yet.
   const std::optional<bool>& is_armed() const { return is_armed_; }
-  /// Whether motors were armed, or disarmed, at any time. DataFlash tells changes only, so motors
-  /// were armed before the first message that says disarmed.
+  /// Whether motors were armed, or disarmed, at any time. DataFlash tells changes only: motors were
+  /// armed before a first message that says disarmed, and disarmed at the beginning of a log with
+  /// LOG_DISARMED.
   bool was_armed() const { return was_armed_; }
   bool was_disarmed() const { return was_disarmed_; }
   /// The last value of each parameter, by name: "SERVO1_FUNCTION".
