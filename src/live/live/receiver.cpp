@@ -91,7 +91,7 @@ void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message
     autopilot_.hear(topics, message);
   }
   const std::size_t place = by_topic_[message.topic];
-  if (place == kNotInUse || autopilot_.is_armed() == false) {
+  if (place == kNotInUse || (armed_only_ && autopilot_.is_disarmed())) {
     return;
   }
   bag::TopicColumns& columns = *columns_[place];

@@ -78,7 +78,9 @@ AutopilotState::Known AutopilotState::known(const Topic& topic) {
 
 void AutopilotState::hear(const std::vector<Topic>& topics, const Message& message) {
   while (by_topic_.size() < topics.size()) {
-    by_topic_.push_back(known(topics[by_topic_.size()]));
+    const Topic& topic = topics[by_topic_.size()];
+    is_of_mavlink_ = is_of_mavlink_ || topic.encoding == "mavlink";
+    by_topic_.push_back(known(topic));
   }
   const Known& of = by_topic_[message.topic];
   if (of.kind == Kind::other) {

@@ -24,6 +24,9 @@ class AutopilotState {
 
   /// Empty: the autopilot has not said so yet.
   const std::optional<bool>& is_armed() const { return is_armed_; }
+  /// Whether motors are disarmed as far as is known: MAVLink tells the state once a second, so
+  /// messages before the first HEARTBEAT count as disarmed.
+  bool is_disarmed() const { return is_armed_ ? !*is_armed_ : is_of_mavlink_; }
   /// Whether motors were armed, or disarmed, at any time. DataFlash tells changes only: motors were
   /// armed before a first message that says disarmed, and disarmed at the beginning of a log with
   /// LOG_DISARMED.
@@ -47,6 +50,7 @@ class AutopilotState {
 
   std::vector<Known> by_topic_;
   std::optional<bool> is_armed_;
+  bool is_of_mavlink_ = false;
   bool was_armed_ = false;
   bool was_disarmed_ = false;
   std::map<std::string, double> parameters_;

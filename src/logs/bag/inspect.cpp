@@ -142,8 +142,8 @@ Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions,
     meet_topics();
     topics[message.topic]->add(bag, message);
     autopilot.hear(bag.topics(), message);
-    if (before_ns > 0 && message.receive_ns > before_ns && autopilot.is_armed() != false) {
-      report.not_disarmed_s += seconds(message.receive_ns - before_ns);
+    if (before_ns > 0 && message.receive_ns > before_ns && !autopilot.is_disarmed()) {
+      report.armed_s += seconds(message.receive_ns - before_ns);
     }
     before_ns = message.receive_ns;
   }

@@ -61,7 +61,7 @@ struct AutopilotReport {
   std::map<std::string, double> parameters;  ///< the last value of each
   bool was_armed = false;
   bool was_disarmed = false;
-  double not_disarmed_s = 0.0;  ///< time that armed_only of read_series() keeps
+  double armed_s = 0.0;  ///< time that armed_only of read_series() keeps
 };
 
 /// Content of a recording, by topic.

@@ -71,10 +71,9 @@ class SeriesBuilder {
  private:
   void check_not_empty() const {
     if (series_.times_ns.empty() && series_.disarmed > 0) {
-      throw InputError(
-          series_.topic,
-          "has messages only while the motors are disarmed; armed_only = true in [log] "
-          "leaves them out");
+      throw InputError(series_.topic,
+                       "has no message while the autopilot says that its motors are armed; "
+                       "armed_only = true in [log] leaves out the others");
     }
     if (series_.times_ns.empty()) {
       throw InputError(series_.topic, "has no readable messages");
@@ -136,7 +135,7 @@ std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& def
       autopilot.hear(bag.topics(), message);
     }
     SeriesBuilder* const builder = by_topic[message.topic];
-    if (builder != nullptr && autopilot.is_armed() == false) {
+    if (builder != nullptr && armed_only && autopilot.is_disarmed()) {
       builder->leave_out();
     } else if (builder != nullptr) {
       builder->add(bag, message);

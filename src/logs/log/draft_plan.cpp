@@ -255,8 +255,7 @@ class Planner {
       plan_.open.push_back(none_known(Part::commands, "commands"));
     }
     keep_armed();
-    const double duration_s =
-        plan_.armed_only ? report_.autopilot.not_disarmed_s : report_.duration_s;
+    const double duration_s = plan_.armed_only ? report_.autopilot.armed_s : report_.duration_s;
     plan_times(report_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, plan_);
     take_voltage();
     return std::move(plan_);
@@ -323,7 +322,7 @@ class Planner {
     if (autopilot.was_armed && autopilot.was_disarmed) {
       plan_.armed_only = true;
       plan_.taken.push_back(fmt::format("rows while the motors are armed: {:.0f} s of {:.0f} s",
-                                        autopilot.not_disarmed_s, report_.duration_s));
+                                        autopilot.armed_s, report_.duration_s));
     } else if (autopilot.was_disarmed) {
       plan_.remarks.emplace_back("the motors are never armed in this log; its rows are kept");
     }

@@ -119,7 +119,8 @@ TEST_F(Ardusub, ArmedOnlyWithoutArmedMessagesIsRefusedByName) {
       "[log]\nrate = 10\narmed_only = true\n[log.states]\nphi = \"ATTITUDE:roll\"\n"
       "[log.derived]\np = \"d(phi)\"\n";
   const std::string refusal = testing::message_of<InputError>([&] { read("still.tlog", config); });
-  EXPECT_NE(refusal.find("only while the motors are disarmed; armed_only"), std::string::npos)
+  EXPECT_NE(refusal.find("while the autopilot says that its motors are armed; armed_only"),
+            std::string::npos)
       << refusal;
 }
 
