@@ -100,8 +100,7 @@ void bind_log(py::module_& module) {
   module.def("guess_roles", &guessed_roles, py::arg("columns"), py::arg("inputs"),
              py::arg("targets"), "Names of inputs and targets, and of the time or \"\".");
   module.def("read_log", &read_log, py::arg("file"), py::arg("config"), py::arg("columns"),
-             py::arg("header_clock"), py::arg("messages"), py::arg("recover"),
-             py::arg("strict"),
+             py::arg("header_clock"), py::arg("messages"), py::arg("recover"), py::arg("strict"),
              "A log as a dict: columns and words by name, units, inputs, targets, time, losses.");
 }
 
