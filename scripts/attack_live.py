@@ -34,6 +34,8 @@ import bluerov_udp as rov  # noqa: E402
 PATIENCE_S = 10.0  # until silence is a hang
 WARM_UP_S = 25.0  # until a model is in service and memory has settled
 DATAGRAMS_PER_S = 2500
+# Number: (byte of the checksum, fields in the order they are sent in).
+MESSAGES = {**rov.MESSAGES, "ODOMETRY": (331, 91, "<Q3f4f3f3f21f21fBB")}
 CONFIG = """
 buffer = 100
 anchors = 30
@@ -245,7 +247,7 @@ def attack_web(run, _vehicle, count, chance):
 
 
 def frame(system, component, sequence, name, values):
-    number, extra, layout = rov.MESSAGES[name]
+    number, extra, layout = MESSAGES[name]
     payload = struct.pack(layout, *values).rstrip(b"\0") or b"\0"
     body = struct.pack("<6B", len(payload), 0, 0, sequence % 256, system, component)
     body += number.to_bytes(3, "little") + payload
