@@ -24,7 +24,8 @@ MESSAGES = {
     "NAMED_VALUE_FLOAT": (251, 170, "<If10s"),
     "STATUSTEXT": (253, 83, "<B50sHB"),
     "SERVO_OUTPUT_RAW": (36, 222, "<I8HB"),
-    "ODOMETRY": (331, 91, "<Q3f4f3f3f21f21fBB"),
+    "ATTITUDE": (30, 39, "<I6f"),
+    "LOCAL_POSITION_NED": (32, 185, "<I6f"),
 }
 NAMES = {number: name for name, (number, _, _) in MESSAGES.items()}
 SET_MESSAGE_INTERVAL = 511
@@ -78,26 +79,62 @@ class Line:
 
 
 class Rov:
-    """Surge and yaw, by one thruster on either side."""
+    """A BlueROV2 in FRD axes: surge, sway, heave and yaw by six thrusters, roll and pitch upright.
+
+    The factors are those of ArduSub's vectored frame (AP_Motors6DOF.cpp); masses and drags are
+    round numbers.
+    """
+
+    FORWARD = (-1, -1, 1, 1, 0, 0)
+    LATERAL = (1, -1, 1, -1, 0, 0)
+    YAW = (1, -1, -1, 1, 0, 0)
+    ROLL = (0, 0, 0, 0, 1, -1)
 
     def __init__(self):
-        self.u = self.r = self.t = 0.0
-        self.n = [0.0, 0.0]
+        self.t = 0.0
+        self.velocity = [0.0] * 6  # u, v, w, p, q, r
+        self.angles = [0.0] * 3  # roll, pitch, yaw
+        self.effort = [0.0] * 6  # -1 to 1
         self.pilot = random.Random(1)
 
     def go(self, dt):
         self.t += dt
-        for side in (0, 1):  # a pilot's hands: towards a new place every few seconds
-            wish = 8.0 * math.sin(0.31 * self.t + 1.7 * side) + 4.0 * math.sin(0.83 * self.t + side)
-            self.n[side] += dt * 4.0 * (wish + self.pilot.gauss(0.0, 3.0) - self.n[side])
-        thrust = [n * abs(n) for n in self.n]
-        self.u += dt * (0.006 * sum(thrust) - 1.4 * self.u * abs(self.u) - 0.3 * self.u)
-        self.r += dt * (0.02 * (thrust[0] - thrust[1]) - 1.1 * self.r * abs(self.r) - 0.5 * self.r)
+        for i in range(6):  # a pilot's hands: towards a new place every few seconds
+            wish = (0.4 * math.sin((0.31 + 0.05 * i) * self.t + 1.7 * i)
+                    + 0.2 * math.sin(0.83 * self.t + i))
+            self.effort[i] += dt * 4.0 * (wish + self.pilot.gauss(0.0, 0.2) - self.effort[i])
+            self.effort[i] = max(-1.0, min(1.0, self.effort[i]))
+        thrust = [e * abs(e) for e in self.effort]
+        push = [sum(f * t for f, t in zip(factors, thrust))
+                for factors in (self.FORWARD, self.LATERAL, self.ROLL, self.YAW)]
+        force = [1.5 * push[0], 1.2 * push[1], 1.0 * (thrust[4] + thrust[5])]
+        moment = [2.0 * push[2] - 6.0 * self.angles[0], 0.4 * force[0] - 6.0 * self.angles[1],
+                  4.0 * push[3]]
+        linear, quadratic = (0.3, 0.5, 0.6, 1.5, 1.5, 0.8), (1.4, 2.0, 2.5, 1.0, 1.0, 1.5)
+        for i, accelerates in enumerate(force + moment):
+            v = self.velocity[i]
+            self.velocity[i] += dt * (accelerates - linear[i] * v - quadratic[i] * v * abs(v))
+        p, q, r = self.velocity[3:]
+        roll, pitch, _ = self.angles
+        turn = q * math.sin(roll) + r * math.cos(roll)
+        for i, rate in enumerate((p + turn * math.tan(pitch), q * math.cos(roll)
+                                  - r * math.sin(roll), turn / math.cos(pitch))):
+            self.angles[i] += dt * rate
+        self.angles[2] = math.remainder(self.angles[2], 2.0 * math.pi)
+
+    def velocity_ned(self):
+        u, v, w = self.velocity[:3]
+        roll, pitch, yaw = self.angles
+        y = v * math.cos(roll) - w * math.sin(roll)
+        z = v * math.sin(roll) + w * math.cos(roll)
+        x = u * math.cos(pitch) + z * math.sin(pitch)
+        return (x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) + y * math.cos(yaw),
+                -u * math.sin(pitch) + z * math.cos(pitch))
 
 
 def simulate(line, seconds):
     rov = Rov()
-    rates = {"HEARTBEAT": 1.0, "ODOMETRY": 4.0, "SERVO_OUTPUT_RAW": 2.0}
+    rates = {"HEARTBEAT": 1.0, "ATTITUDE": 4.0, "LOCAL_POSITION_NED": 3.0, "SERVO_OUTPUT_RAW": 2.0}
     due = dict.fromkeys(rates, 0.0)
     step = 0.005
     began = time.monotonic()
@@ -113,15 +150,16 @@ def simulate(line, seconds):
 
 
 def say(line, rov, name):
-    usec = int(1e6 * rov.t)
+    ms = int(1e3 * rov.t)
     if name == "HEARTBEAT":
-        line.send(name, 0, 12, 3, 0, 4, 3)  # a submarine, ArduPilot, active
-    elif name == "ODOMETRY":
-        line.send(name, usec, *[0.0] * 3, 1.0, *[0.0] * 3, rov.u, 0.0, 0.0, 0.0, 0.0, rov.r,
-                  *[0.0] * 42, 20, 12)
+        line.send(name, 0, 12, 3, 209, 4, 3)  # a submarine, ArduPilot, armed, active
+    elif name == "ATTITUDE":
+        line.send(name, ms, *rov.angles, *rov.velocity[3:])
+    elif name == "LOCAL_POSITION_NED":
+        line.send(name, ms, 0.0, 0.0, 0.0, *rov.velocity_ned())
     else:
-        servos = [round(1500 + 30 * n) for n in rov.n]
-        line.send(name, usec % 2**32, *servos, *[1500] * 6, 0)
+        servos = [round(1500 + 400 * effort) for effort in rov.effort]
+        line.send(name, 1000 * ms % 2**32, *servos, 0, 0, 0)
 
 
 def listen(line, rates, due, now, name, values):

@@ -34,19 +34,29 @@ import bluerov_udp as rov  # noqa: E402
 PATIENCE_S = 10.0  # until silence is a hang
 WARM_UP_S = 25.0  # until a model is in service and memory has settled
 DATAGRAMS_PER_S = 2500
+# Number: (byte of the checksum, fields in the order they are sent in).
+MESSAGES = {**rov.MESSAGES, "ODOMETRY": (331, 91, "<Q3f4f3f3f21f21fBB")}
 CONFIG = """
 buffer = 100
 anchors = 30
 [log]
-inputs = ["u", "r", "left", "right"]
+inputs = ["u", "r", "m1", "m2", "m3", "m4"]
 targets = ["udot", "rdot"]
 rate = 10
+vectors = [{{columns = ["u", "v", "w"], from = "NED", to = "FRD", attitude = ["phi", "theta", "psi"]}}]
 [log.states]
-u = "ODOMETRY:vx"
-r = "ODOMETRY:yawspeed"
+u = "LOCAL_POSITION_NED:vx"
+v = "LOCAL_POSITION_NED:vy"
+w = "LOCAL_POSITION_NED:vz"
+phi = "ATTITUDE:roll"
+theta = "ATTITUDE:pitch"
+psi = "ATTITUDE:yaw"
+r = "ATTITUDE:yawspeed"
 [log.commands]
-left = "SERVO_OUTPUT_RAW:servo1_raw"
-right = "SERVO_OUTPUT_RAW:servo2_raw"
+m1 = "SERVO_OUTPUT_RAW:servo1_raw"
+m2 = "SERVO_OUTPUT_RAW:servo2_raw"
+m3 = "SERVO_OUTPUT_RAW:servo3_raw"
+m4 = "SERVO_OUTPUT_RAW:servo4_raw"
 [log.derived]
 udot = "d(u)"
 rdot = "d(r)"
@@ -79,13 +89,15 @@ class Vehicle(threading.Thread):
 
     def run(self):
         body = rov.Rov()
-        rates = {"HEARTBEAT": 1.0, "ODOMETRY": 20.0, "SERVO_OUTPUT_RAW": 20.0}
+        rates = {"HEARTBEAT": 1.0, "ATTITUDE": 20.0, "LOCAL_POSITION_NED": 20.0,
+                 "SERVO_OUTPUT_RAW": 20.0}
         due = dict.fromkeys(rates, 0.0)
         began, step = time.monotonic(), 0.005
         while not self.ends.is_set():
-            before = body.u, body.r
+            before = body.velocity[0], body.velocity[5]
             body.go(step)
-            for key, now, then in zip(("udot", "rdot"), (body.u, body.r), before):
+            after = body.velocity[0], body.velocity[5]
+            for key, now, then in zip(("udot", "rdot"), after, before):
                 low, high = self.seen[key]
                 value = (now - then) / step
                 self.seen[key] = [min(low, value), max(high, value)]
@@ -235,7 +247,7 @@ def attack_web(run, _vehicle, count, chance):
 
 
 def frame(system, component, sequence, name, values):
-    number, extra, layout = rov.MESSAGES[name]
+    number, extra, layout = MESSAGES[name]
     payload = struct.pack(layout, *values).rstrip(b"\0") or b"\0"
     body = struct.pack("<6B", len(payload), 0, 0, sequence % 256, system, component)
     body += number.to_bytes(3, "little") + payload

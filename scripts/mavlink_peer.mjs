@@ -4,6 +4,7 @@
 //   npm install --prefix /tmp/mavlink-peer node-mavlink@2.3.0
 //   export NODE_PATH=/tmp/mavlink-peer/node_modules
 //   node scripts/mavlink_peer.mjs read FILE.tlog    # counts and hashes of all values, as tests have them
+//   node scripts/mavlink_peer.mjs count FILE.tlog   # frames with a right checksum, frame by frame
 //   node scripts/mavlink_peer.mjs write             # frames in hex, as tests/logs/mavlink has them
 //   echo HEX... | node scripts/mavlink_peer.mjs hear   # what frames say that kelpie wrote, and
 //                                                      # whether the key of "secret" signed them
@@ -14,7 +15,7 @@ import { PassThrough } from "node:stream";
 
 const require = createRequire(process.env.NODE_PATH ? process.env.NODE_PATH + "/" : import.meta.url);
 const mavlink = require("node-mavlink");
-const { minimal, standard, common, ardupilotmega } = require("mavlink-mappings");
+const { minimal, standard, common, ardupilotmega, MSG_ID_MAGIC_NUMBER } = require("mavlink-mappings");
 const registry = Object.assign(
   {}, minimal.REGISTRY, standard.REGISTRY, common.REGISTRY, ardupilotmega.REGISTRY);
 
@@ -63,6 +64,27 @@ async function read(file) {
     console.log(`{"${registry[id].MSG_NAME}", {${count}, ${state}U}},`);
 }
 
+// Frame by frame as the file has them: a stream of node-mavlink loses sound frames beside damaged.
+function count(file) {
+  const log = readFileSync(file);
+  const found = {};
+  let damaged = 0;
+  for (let at = 8; at < log.length; ) {
+    const second = log[at] === 0xfd;
+    const head = second ? 10 : 6;
+    const end = at + head + log[at + 1];
+    const id = second ? log.readUIntLE(at + 7, 3) : log[at + 5];
+    const right =
+      registry[id] && mavlink.x25crc(log.subarray(at, end), 1, 0, MSG_ID_MAGIC_NUMBER[id]);
+    if (registry[id] && right === log.readUInt16LE(end))
+      found[registry[id].MSG_NAME] = (found[registry[id].MSG_NAME] ?? 0) + 1;
+    else damaged += 1;
+    at = end + 2 + (second && (log[at + 2] & 1) ? 13 : 0) + 8;
+  }
+  for (const [name, frames] of Object.entries(found)) console.log(`{"${name}", ${frames}},`);
+  console.log("without a right checksum", damaged);
+}
+
 function write() {
   const attitude = Object.assign(new common.Attitude(), { timeBootMs: 1234, roll: 0.5, yaw: -2 });
   const command = Object.assign(new common.CommandLong(), {
@@ -91,9 +113,10 @@ async function hear() {
 
 const [command, file] = process.argv.slice(2);
 if (command === "read") await read(file);
+else if (command === "count") count(file);
 else if (command === "write") write();
 else if (command === "hear") await hear();
 else {
-  console.error("usage: mavlink_peer.mjs read FILE | write | hear");
+  console.error("usage: mavlink_peer.mjs read FILE | count FILE | write | hear");
   process.exit(2);
 }

@@ -46,6 +46,7 @@ def read_log(
     header_clock: bool,
     messages: str,
     recover: bool,
+    strict: bool,
 ) -> dict[str, Any]: ...
 def align(
     X: NDArray[np.float64],

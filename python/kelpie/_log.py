@@ -31,7 +31,7 @@ class LogArrays(dict[str, NDArray[Any]]):
 
 def read_log(path: _Path, config: Optional[_Path] = None, *,
              columns: Optional[Sequence[str]] = None, clock: str = "receive",
-             messages: Optional[_Path] = None, recover: bool = False,
+             messages: Optional[_Path] = None, recover: bool = False, strict: bool = False,
              frame: Optional[bool] = None) -> Any:
     """Reads a log of any kind that kelpie knows: CSV, or a recording of messages.
 
@@ -47,6 +47,7 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     clock : "receive" or "header", whose times `columns` have.
     messages : folder of .msg files, for types that the recording doesn't define.
     recover : read what can be read of a damaged recording; `attrs["losses"]` says what was lost.
+    strict : refuse messages with a wrong checksum, which are passed over and counted otherwise.
     frame : True for a pandas data frame, False for a dict of arrays (LogArrays). Default: a data
         frame where pandas is installed.
 
@@ -60,6 +61,8 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     """
     if clock not in ("receive", "header"):
         raise ValueError(f"clock: {clock!r} is not known; 'receive' and 'header' are")
+    if recover and strict:
+        raise ValueError("strict: a damaged recording is recovered or refused, not both")
     if isinstance(columns, str):
         columns = [columns]
     if columns is not None and (config is not None or not columns):
@@ -69,7 +72,7 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
         raise ImportError("frame: pandas isn't installed; without it there are arrays (frame=False)")
     found = _kelpie.read_log(os.fspath(path), "" if config is None else os.fspath(config),
                              list(columns or []), clock == "header",
-                             "" if messages is None else os.fspath(messages), recover)
+                             "" if messages is None else os.fspath(messages), recover, strict)
     log = LogArrays(found["columns"])
     for name, words in found["words"].items():
         log[name] = _with_words(log[name], words)

@@ -101,11 +101,14 @@ py::dict dict_of(const log::Log& log) {
 }
 
 py::dict read_log(const std::string& file, const std::string& config, const Names& columns,
-                  bool header_clock, const std::string& messages, bool recover) {
+                  bool header_clock, const std::string& messages, bool recover, bool strict) {
+  const bag::ReadMode mode = strict    ? bag::ReadMode::strict
+                             : recover ? bag::ReadMode::recover
+                                       : bag::ReadMode::usual;
   log::Log log;
   {
     const py::gil_scoped_release release;
-    const log::LogSource source{.path = file, .definitions = messages, .recover = recover};
+    const log::LogSource source{.path = file, .definitions = messages, .mode = mode};
     if (!columns.empty()) {
       log = log::read_columns(source, columns,
                               header_clock ? bag::Clock::header : bag::Clock::receive);
@@ -135,7 +138,7 @@ void bind_log(py::module_& module) {
              py::arg("y"), py::arg("t"), py::arg("has_times"), py::arg("states"),
              "What cannot be right in these rows, in words (log/plausibility.hpp).");
   module.def("read_log", &read_log, py::arg("file"), py::arg("config"), py::arg("columns"),
-             py::arg("header_clock"), py::arg("messages"), py::arg("recover"),
+             py::arg("header_clock"), py::arg("messages"), py::arg("recover"), py::arg("strict"),
              "A log as a dict: columns and words by name, units, inputs, targets, time, losses.");
 }
 

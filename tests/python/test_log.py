@@ -69,6 +69,18 @@ def test_columns_of_messages_with_units():
     assert log.attrs["units"] == {columns[0]: "rad/s", columns[1]: "m/s"}
 
 
+def test_messages_with_a_wrong_checksum_are_counted_or_refused():
+    file = real_log("logs/blueos_badcrc.tlog")
+    log = kelpie.read_log(file, columns=["ATTITUDE:roll"], frame=False)
+    assert len(log["t"]) > 6000
+    assert [line.split(",")[0] for line in log.attrs["losses"]] == [
+        "passed over: 1953 messages with a wrong checksum"]
+    with pytest.raises(ValueError, match="the checksum of message 132 is wrong"):
+        kelpie.read_log(file, columns=["ATTITUDE:roll"], strict=True)
+    with pytest.raises(ValueError, match="strict: "):
+        kelpie.read_log(file, strict=True, recover=True)
+
+
 def test_what_is_wrong_is_named(tmp_path):
     bag = FIXTURES / "zstd.mcap"
     (tmp_path / "bad.csv").write_text("u,u\n1,2\n")

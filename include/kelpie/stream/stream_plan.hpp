@@ -52,7 +52,9 @@ struct StreamPlan {
     Interpolation between = Interpolation::line;
     std::optional<double> lag_s = 0.0;  ///< delay of the stamps [s]; empty: to be estimated
     std::size_t keep = kUsualKeep;      ///< number of stored samples
-    double scale = 1.0;                 ///< factor of all values: the unit of the rows
+    /// A sample is about + scale (value − about): another unit (scale), or a mirror (scale −1).
+    double scale = 1.0;
+    double about = 0.0;
   };
   /// A time derivative.
   struct Derived {

@@ -52,7 +52,7 @@ class SampleStream::State {
   // Destination of a source's samples: conversion of a vector changes signs and places.
   struct Route {
     std::size_t to = 0;
-    double factor = 1.0;  // sign of an axis times StreamPlan::Source::scale
+    double sign = 1.0;
   };
   struct Column {
     std::size_t source = 0;
@@ -129,7 +129,7 @@ SampleStream::State::State(const StreamPlan& plan)
     require(source.lag_s.has_value() && std::isfinite(*source.lag_s), source.name,
             "its lag has to be a number of s; one to be estimated takes a log");
     signals_.emplace_back(source.keep, *source.lag_s, plan_.gap_s);
-    routes_.push_back({.to = k, .factor = source.scale});
+    routes_.push_back({.to = k});
     ahead_s_.push_back(0.0);
     back_s_.push_back(0.0);
     known_by_.push_back(source.between);
@@ -163,7 +163,9 @@ SignalVerdict SampleStream::State::feed(std::size_t source, double stamp_s, doub
     return SignalVerdict::no_stamp;
   }
   follow_clock(stamp_s);
-  const SignalVerdict heard = take(route.to, stamp_s, route.factor * value);
+  const StreamPlan::Source& from = plan_.sources[source];
+  const double scaled = from.about + from.scale * (value - from.about);
+  const SignalVerdict heard = take(route.to, stamp_s, route.sign * scaled);
   settle_turns();
   settle_arm();
   return heard;
@@ -352,8 +354,7 @@ void SampleStream::State::route_vectors() {
           std::ranges::find_if(image, [](double part) { return part != 0.0; }) - image.begin());
       for (std::size_t k = 0; k < before.size(); ++k) {
         if (before[k].to == source) {
-          routes_[k] = {.to = plan_.source(vector.columns[to]),
-                        .factor = before[k].factor * image[to]};
+          routes_[k] = {.to = plan_.source(vector.columns[to]), .sign = before[k].sign * image[to]};
         }
       }
     }

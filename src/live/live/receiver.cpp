@@ -43,6 +43,7 @@ std::vector<std::size_t> velocities_of(const StreamPlan& plan) {
 Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_t> origin_ns)
     : definitions_(configuration.log.messages),
       clock_(configuration.log.clock),
+      armed_only_(configuration.log.armed_only),
       stream_(configuration.plan),
       columns_(bag::columns_by_topic(configuration.columns())),
       velocities_(velocities_of(configuration.plan)),
@@ -86,8 +87,11 @@ void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message
   while (by_topic_.size() < topics.size()) {
     bind(topics[by_topic_.size()]);
   }
+  if (armed_only_) {
+    autopilot_.hear(topics, message);
+  }
   const std::size_t place = by_topic_[message.topic];
-  if (place == kNotInUse) {
+  if (place == kNotInUse || (armed_only_ && autopilot_.is_disarmed())) {
     return;
   }
   bag::TopicColumns& columns = *columns_[place];

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bag/autopilot_state.hpp"
 #include "bag/topic_columns.hpp"
 #include "kelpie/stream/sample_stream.hpp"
 #include "live/configuration.hpp"
@@ -71,6 +72,8 @@ class Receiver {
 
   bag::MessageDefinitions definitions_;
   bag::Clock clock_;
+  bool armed_only_;
+  bag::AutopilotState autopilot_;
   SampleStream stream_;
   std::vector<std::unique_ptr<bag::TopicColumns>> columns_;     // per topic in use
   std::vector<std::vector<std::vector<std::size_t>>> sources_;  // fed by each column

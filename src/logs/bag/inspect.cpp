@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "bag/autopilot_state.hpp"
 #include "bag/decoding.hpp"
 #include "bag/statistics.hpp"
 #include "core/quantile.hpp"
@@ -127,8 +128,11 @@ class TopicInspector final : public NumberVisitor {
 
 using Inspectors = std::vector<std::unique_ptr<TopicInspector>>;
 
-Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions) {
+Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions,
+                   AutopilotReport& report) {
   Inspectors topics;
+  AutopilotState autopilot;
+  std::int64_t before_ns = 0;
   const auto meet_topics = [&] {
     for (std::size_t k = topics.size(); k < bag.topics().size(); ++k) {
       topics.push_back(std::make_unique<TopicInspector>(bag.topics()[k], definitions));
@@ -137,15 +141,24 @@ Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions) {
   for (Message message; bag.next(message);) {
     meet_topics();
     topics[message.topic]->add(bag, message);
+    autopilot.hear(bag.topics(), message);
+    if (before_ns > 0 && message.receive_ns > before_ns && !autopilot.is_disarmed()) {
+      report.armed_s += seconds(message.receive_ns - before_ns);
+    }
+    before_ns = message.receive_ns;
   }
   meet_topics();
+  report.parameters = autopilot.parameters();
+  report.was_armed = autopilot.was_armed();
+  report.was_disarmed = autopilot.was_disarmed();
   return topics;
 }
 
 }  // namespace
 
 BagReport inspect_bag(MessageReader& bag, const MessageDefinitions& definitions) {
-  const Inspectors topics = look_at(bag, definitions);
+  BagReport report;
+  const Inspectors topics = look_at(bag, definitions, report.autopilot);
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = 0;
   for (const auto& topic : topics) {
@@ -154,7 +167,6 @@ BagReport inspect_bag(MessageReader& bag, const MessageDefinitions& definitions)
       last_ns = std::max(last_ns, span->second);
     }
   }
-  BagReport report;
   for (const auto& topic : topics) {
     report.topics.push_back(topic->finished(first_ns));
     report.messages += report.topics.back().messages;
@@ -166,6 +178,7 @@ BagReport inspect_bag(MessageReader& bag, const MessageDefinitions& definitions)
   std::ranges::sort(report.topics, {}, &TopicReport::name);
   report.losses = bag.losses();
   report.loss_count = bag.loss_count();
+  report.passed_over = bag.passed_over();
   return report;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,6 +56,14 @@ struct TopicReport {
   std::string not_decoded{};         ///< reason for missing fields, or empty
 };
 
+/// What the autopilot of a recording says of itself (AutopilotState).
+struct AutopilotReport {
+  std::map<std::string, double> parameters;  ///< the last value of each
+  bool was_armed = false;
+  bool was_disarmed = false;
+  double armed_s = 0.0;  ///< time that armed_only of read_series() keeps
+};
+
 /// Content of a recording, by topic.
 struct BagReport {
   std::size_t messages = 0;
@@ -63,6 +72,8 @@ struct BagReport {
   std::vector<TopicReport> topics;  ///< sorted by name
   std::vector<std::string> losses;  ///< the first losses of a recovered bag
   std::size_t loss_count = 0;
+  std::map<std::string, std::size_t> passed_over;  ///< MessageReader::passed_over()
+  AutopilotReport autopilot;
 };
 
 /// Reads a recording to the end. Topics that cannot be decoded are counted too. Throws as reading

@@ -120,7 +120,7 @@ Reader open_file(const fs::path& file, ReadMode mode, const RowTimes& times) {
 class FolderReader final : public MessageReader {
  public:
   FolderReader(const fs::path& folder, ReadMode mode) : MessageReader(mode, folder.string()) {
-    if (mode == ReadMode::strict || is_there(folder / kMetadata)) {
+    if (mode != ReadMode::recover || is_there(folder / kMetadata)) {
       list_files(folder);
     } else {
       lose(InputError({.file = (folder / kMetadata).string()},

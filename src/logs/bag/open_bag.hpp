@@ -25,7 +25,7 @@ bool may_lack_times(const std::filesystem::path& file);
 /// recover mode a folder may lack metadata.yaml or files. Throws InputError naming the file:
 /// missing, empty, of an unknown format or storage, compressed by rosbag2, cut off.
 std::unique_ptr<MessageReader> open_bag(const std::filesystem::path& path,
-                                        ReadMode mode = ReadMode::strict,
+                                        ReadMode mode = ReadMode::usual,
                                         const RowTimes& times = {});
 
 /// The same of the content of a file (not SQLite or MATLAB), which has to outlive the reader.

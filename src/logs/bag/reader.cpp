@@ -1,7 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/reader.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace kelpie::bag {
+namespace {
+
+// One line, with the topic that most of the messages belong to.
+std::string passed_over_text(const std::map<std::string, std::size_t>& by_topic) {
+  if (by_topic.empty()) {
+    return "";
+  }
+  using Entry = std::map<std::string, std::size_t>::value_type;
+  const auto most = std::ranges::max_element(by_topic, {}, &Entry::second);
+  std::size_t all = 0;
+  for (const auto& [topic, count] : by_topic) {
+    all += count;
+  }
+  return fmt::format(
+      "passed over: {} message{} with a wrong checksum, {} of {} (--strict refuses)\n", all,
+      all == 1 ? "" : "s", most->second, most->first);
+}
+
+}  // namespace
 
 bool MessageReader::next(Message& message) {
   while (!at_end()) {
@@ -18,7 +41,7 @@ bool MessageReader::next(Message& message) {
 }
 
 std::string MessageReader::losses_text() const {
-  std::string text;
+  std::string text = passed_over_text(passed_over_);
   for (const std::string& loss : losses_) {
     text += "lost: " + loss + "\n";
   }
@@ -29,7 +52,7 @@ std::string MessageReader::losses_text() const {
 }
 
 void MessageReader::lose(const InputError& damage) {
-  if (mode_ == ReadMode::strict) {
+  if (mode_ != ReadMode::recover) {
     throw damage;  // NOLINT(cert-err60-cpp): a copy of texts fails only without memory
   }
   if (losses_.size() < kShownLosses) {
@@ -45,6 +68,9 @@ void MessageReader::take_losses(MessageReader& other) {
     }
   }
   loss_count_ += std::exchange(other.loss_count_, 0);
+  for (const auto& [topic, count] : std::exchange(other.passed_over_, {})) {
+    passed_over_[topic] += count;
+  }
   other.losses_.clear();
 }
 

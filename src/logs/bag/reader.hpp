@@ -38,6 +38,7 @@ struct Message {
 /// Treatment of damage in a recording.
 enum class ReadMode {
   strict,   ///< the first damage is an InputError
+  usual,    ///< as strict; but messages with a wrong checksum are passed over and counted
   recover,  ///< damage is noted, and reading continues behind the damage
 };
 
@@ -72,15 +73,18 @@ class MessageReader {
   /// when next() has returned false.
   const std::vector<Topic>& topics() const { return topics_; }
 
-  /// Reports damage, also damage found while decoding a message. Strict mode: throws `damage`.
-  /// Recover mode: notes the loss.
+  /// Reports damage, also damage found while decoding a message. Recover mode notes the loss; other
+  /// modes throw `damage`.
   void lose(const InputError& damage);
 
   /// Descriptions of the first kShownLosses losses, and the total count.
   const std::vector<std::string>& losses() const { return losses_; }
   std::size_t loss_count() const { return loss_count_; }
   static constexpr std::size_t kShownLosses = 20;
-  std::string losses_text() const;  ///< for a terminal, a line per loss; "" without losses
+  /// Numbers of messages with a wrong checksum that were passed over, by topic.
+  const std::map<std::string, std::size_t>& passed_over() const { return passed_over_; }
+  /// For a terminal: a line for the messages passed over, and a line per loss; "" without either.
+  std::string losses_text() const;
 
   /// Keeps `content` in memory as long as the reader.
   void keep(std::shared_ptr<const void> content) { content_ = std::move(content); }
@@ -97,6 +101,8 @@ class MessageReader {
   /// Index of the topic of this name; appends a new topic. Throws InputError (file) on a known
   /// topic with another type.
   std::size_t add_topic(const Topic& topic, const std::string& file);
+  /// Counts a message with a wrong checksum, of the topic called `topic`.
+  void pass_over(const std::string& topic) { ++passed_over_[topic]; }
   /// Takes over the losses of `other`.
   void take_losses(MessageReader& other);
   ReadMode mode() const { return mode_; }
@@ -108,6 +114,7 @@ class MessageReader {
   std::map<std::string, std::size_t> index_by_name_;
   std::vector<std::string> losses_;
   std::size_t loss_count_ = 0;
+  std::map<std::string, std::size_t> passed_over_;
   std::shared_ptr<const void> content_;
 };
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "bag/autopilot_state.hpp"
 #include "bag/topic_columns.hpp"
 #include "core/text.hpp"
 
@@ -27,6 +28,8 @@ class SeriesBuilder {
   }
 
   TopicColumns& columns() { return columns_; }
+
+  void leave_out() { ++series_.disarmed; }
 
   void add(MessageReader& bag, const Message& message) {
     columns_.begin(message);
@@ -47,6 +50,7 @@ class SeriesBuilder {
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return series_.times_ns[i]; });
     Series sorted{series_.topic, series_.names, {}, {}};
     sorted.stored_first_ns = series_.times_ns.front();
+    sorted.disarmed = series_.disarmed;
     for (std::size_t k = 0; k < series_.names.size(); ++k) {
       sorted.units.push_back(columns_.unit(k));
     }
@@ -66,6 +70,11 @@ class SeriesBuilder {
 
  private:
   void check_not_empty() const {
+    if (series_.times_ns.empty() && series_.disarmed > 0) {
+      throw InputError(series_.topic,
+                       "has no message while the autopilot says that its motors are armed; "
+                       "armed_only = true in [log] leaves out the others");
+    }
     if (series_.times_ns.empty()) {
       throw InputError(series_.topic, "has no readable messages");
     }
@@ -99,7 +108,7 @@ void check_all_met(const std::vector<std::unique_ptr<TopicColumns>>& wanted,
 }
 
 std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& definitions,
-                               std::span<const std::string> columns, Clock clock) {
+                               std::span<const std::string> columns, Clock clock, bool armed_only) {
   const std::vector<std::unique_ptr<TopicColumns>> wanted = columns_by_topic(columns);
   std::vector<SeriesBuilder> builders;
   builders.reserve(wanted.size());
@@ -119,10 +128,17 @@ std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& def
     }
   };
   bind_new_topics();
+  AutopilotState autopilot;
   for (Message message; bag.next(message);) {
     bind_new_topics();
-    if (by_topic[message.topic] != nullptr) {
-      by_topic[message.topic]->add(bag, message);
+    if (armed_only) {
+      autopilot.hear(bag.topics(), message);
+    }
+    SeriesBuilder* const builder = by_topic[message.topic];
+    if (builder != nullptr && armed_only && autopilot.is_disarmed()) {
+      builder->leave_out();
+    } else if (builder != nullptr) {
+      builder->add(bag, message);
     }
   }
   bind_new_topics();
@@ -147,9 +163,10 @@ const Series& series_with(std::span<const Series> all, const std::string& column
 }
 
 std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
-                                std::span<const std::string> columns, Clock clock) {
+                                std::span<const std::string> columns, Clock clock,
+                                bool armed_only) {
   try {
-    return read_named(bag, definitions, columns, clock);
+    return read_named(bag, definitions, columns, clock, armed_only);
   } catch (const InputError& error) {
     if (!error.place().file.empty()) {
       throw;

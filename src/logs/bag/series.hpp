@@ -22,6 +22,7 @@ struct Series {
   std::int64_t longest_back_ns = 0;         ///< how far back the farthest step of time went
   std::int64_t stored_first_ns = 0;         ///< of the first message in storage
   std::vector<std::string> units{};         ///< of the columns, as in the definition
+  std::size_t disarmed = 0;                 ///< messages left out because motors were disarmed
 
   /// Index of a column; names.size() if the series lacks the column.
   std::size_t column(const std::string& name) const;
@@ -35,9 +36,11 @@ const Series& series_with(std::span<const Series> all, const std::string& column
 /// the topics' first columns. Other topics are not decoded. Throws InputError (bag, column or
 /// topic): malformed name, unknown topic or field (with the nearest known name), a text field, a
 /// sequence that never had the element, a topic without messages, definition or known encoding, no
-/// header for the header clock; in strict mode damage. Recover mode: messages that cannot be
-/// decoded are skipped and noted.
+/// header for the header clock; damage, but in recover mode, where messages that cannot be decoded
+/// are skipped and noted. `armed_only`: messages while the autopilot says that its motors are
+/// disarmed are left out (AutopilotState).
 std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
-                                std::span<const std::string> columns, Clock clock);
+                                std::span<const std::string> columns, Clock clock,
+                                bool armed_only = false);
 
 }  // namespace kelpie::bag

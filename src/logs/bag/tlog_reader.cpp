@@ -83,9 +83,23 @@ class TlogReader final : public FileReader {
   // Not, where a sender's checksum of that message is always wrong: it has another definition.
   bool is_damaged(std::span<const std::byte> bytes, const FrameHead& head,
                   mavlink::Frame& frame) const {
-    const FrameState state = read_frame(head, frame);
-    const bool is_foreign = state == FrameState::unknown || !sound_.contains(kind_of(head));
-    return state != FrameState::sound && !(is_foreign && ends_where_another_begins(bytes, head));
+    const bool is_foreign = !sound_.contains(kind_of(head));
+    return read_frame(head, frame) != FrameState::sound &&
+           !(is_foreign && ends_where_another_begins(bytes, head));
+  }
+
+  // A frame with a wrong checksum is refused, or counted and passed over.
+  void leave_damaged(std::span<const std::byte> bytes, const FrameHead& head) {
+    if (mode() == ReadMode::strict) {
+      region_.refuse(
+          at_, fmt::format("a frame is damaged: the checksum of message {} is wrong", head.id()));
+    }
+    pass_over(topic_called(head, mavlink::find_definition(head.id())).name);
+    if (ends_where_another_begins(bytes, head)) {
+      at_ += kStamp + head.frame_bytes();
+    } else {
+      pass_damage();
+    }
   }
 
   bool step(Message& message) override {
@@ -103,8 +117,8 @@ class TlogReader final : public FileReader {
     }
     mavlink::Frame frame;
     if (is_damaged(left, *head, frame)) {
-      region_.refuse(
-          at_, fmt::format("a frame is damaged: the checksum of message {} is wrong", head->id()));
+      leave_damaged(left, *head);
+      return false;
     }
     const std::int64_t time_ns = static_cast<std::int64_t>(stamp_at(left)) * 1'000;
     message = {.topic = topic_of(*head, frame.definition),
@@ -118,16 +132,18 @@ class TlogReader final : public FileReader {
   }
 
   std::size_t topic_of(const FrameHead& head, const mavlink::Definition* definition) {
-    const auto [id, sender] = kind_of(head);
     const auto [found, is_new] =
         topics_.try_emplace({kind_of(head), definition != nullptr}, topics().size());
     if (is_new) {
-      found->second =
-          add_topic(definition == nullptr ? unknown_mavlink_topic(id, sender)
-                                          : mavlink_topic(*definition, sender, vehicle_),
-                    region_.file);
+      found->second = add_topic(topic_called(head, definition), region_.file);
     }
     return found->second;
+  }
+
+  Topic topic_called(const FrameHead& head, const mavlink::Definition* definition) const {
+    const auto [id, sender] = kind_of(head);
+    return definition == nullptr ? unknown_mavlink_topic(id, sender)
+                                 : mavlink_topic(*definition, sender, vehicle_);
   }
 
   void pass_damage() override {

@@ -20,8 +20,10 @@ bool begins_as_tlog(std::string_view beginning);
 /// sender (mavlink_topic). The vehicle is the autopilot whose HEARTBEAT is in the file; with
 /// several autopilots, no sender is the vehicle. Messages without a definition, and messages of a
 /// sender whose checksum is never right (another definition), become topics that cannot be decoded.
-/// Throws InputError (file, offset) on bytes outside of frames, a wrong checksum, a cut-off file.
-/// Recover mode: continues with the next frame with a right checksum.
+/// Frames with a wrong checksum, of a sender whose checksum of the message is right elsewhere, are
+/// passed over and counted (BlueOS issue 1740: damaged DISTANCE_SENSORs in almost every log).
+/// Throws InputError (file, offset) on bytes outside of frames and a cut-off file, in strict mode
+/// on a wrong checksum too. Recover mode: continues with the next frame with a right checksum.
 /// Cost: two passes over the frames. Memory: the topics.
 std::unique_ptr<MessageReader> read_tlog(std::span<const std::byte> bytes, const std::string& file,
                                          ReadMode mode);

@@ -14,6 +14,7 @@
 
 #include "core/text.hpp"
 #include "kelpie/core/scaling.hpp"
+#include "log/ardusub.hpp"
 #include "log/tuning.hpp"
 #include "motion/signal_names.hpp"
 
@@ -94,6 +95,7 @@ std::vector<std::string> short_names(const std::vector<CandidateColumn>& columns
 // Rates of the signals of a plan.
 struct SignalRates {
   std::vector<CandidateColumn> used;
+  double duration_s;   // of the rows
   double moving_hz;    // of the slowest learned velocity; +inf: none
   double commands_hz;  // of the slowest command
 };
@@ -117,7 +119,7 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
     plan.open.emplace_back("velocities: their times tell no rate");
     return;
   }
-  const double wanted = std::clamp(kTuning.wanted_rows / std::max(report.duration_s, 1.0),
+  const double wanted = std::clamp(kTuning.wanted_rows / std::max(rates.duration_s, 1.0),
                                    kTuning.usual_rate_hz, kTuning.fastest_rate_hz);
   plan.rate_hz = std::min(wanted, rates.moving_hz);
   plan.rate_hz = plan.rate_hz > 1.0 ? std::floor(plan.rate_hz + 0.1) : plan.rate_hz;
@@ -147,7 +149,7 @@ void choose_clock(const SignalRates& rates, DraftPlan& plan) {
   }
 }
 
-void say_what_is_slow(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+void say_what_is_slow(const SignalRates& rates, DraftPlan& plan) {
   if (rates.commands_hz < kTuning.slow_hz) {
     plan.remarks.push_back(
         fmt::format("commands come at {:.2g} Hz; the log misses faster changes of thrust, "
@@ -160,7 +162,7 @@ void say_what_is_slow(const bag::BagReport& report, const SignalRates& rates, Dr
         "faster can't be seen",
         rates.moving_hz, plan.window_s));
   }
-  const double rows = plan.rate_hz * report.duration_s;
+  const double rows = plan.rate_hz * rates.duration_s;
   if (!plan.targets.empty() && rows < kTuning.few_rows) {
     plan.remarks.push_back(
         fmt::format("{:.0f} rows are few: scores on the last rows are uncertain", rows));
@@ -185,7 +187,7 @@ void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPla
   ask_for_row_times(report, rates, plan);
   choose_rate(report, rates, plan);
   choose_clock(rates, plan);
-  say_what_is_slow(report, rates, plan);
+  say_what_is_slow(rates, plan);
 }
 
 constexpr std::array<const char*, 6> kAxes{"u", "v", "w", "p", "q", "r"};
@@ -199,15 +201,42 @@ std::string rate_of_change(const std::string& unit) {
   return unit.ends_with("/s") ? unit + "^2" : unit + "/s";
 }
 
+// Units of states that a draft turns into SI units.
+struct UnitFactor {
+  std::string_view unit;
+  double factor;
+  const char* si;
+};
+constexpr double kDegree = 0.017453292519943295;
+constexpr std::array kFactors = std::to_array<UnitFactor>({{"deg", kDegree, "rad"},
+                                                           {"deg/s", kDegree, "rad/s"},
+                                                           {"cm/s", 0.01, "m/s"},
+                                                           {"mm/s", 0.001, "m/s"},
+                                                           {"mV", 0.001, "V"}});
+
+// The number of an output: 3 of "SERVO_OUTPUT_RAW:servo3_raw" and of "RCOU:C3"; 0: no such column.
+std::size_t output_of(const CandidateColumn& column) {
+  const std::string kind = column.topic.substr(column.topic.rfind('/') + 1);
+  if (kind != "SERVO_OUTPUT_RAW" && kind != "RCOU") {
+    return 0;
+  }
+  const std::size_t digit = column.name.find_first_of("0123456789", column.name.rfind(':'));
+  return digit == std::string::npos ? 0 : std::strtoul(&column.name[digit], nullptr, 10);
+}
+
 class Planner {
  public:
   Planner(const bag::BagReport& report, const std::string& time)
-      : report_(report), all_(find_candidates(report)) {
+      : report_(report),
+        all_(find_candidates(report)),
+        motors_(motor_outputs(report.autopilot.parameters)),
+        is_submarine_(is_submarine(report)) {
     plan_.time = time;
     plan_.is_of_bag = !(report.topics.size() == 1 && report.topics.front().name.empty());
   }
 
   DraftPlan run() {
+    keep_thrusters();
     const std::optional<Candidate> velocity = choose(Part::velocity, "velocities", "");
     const std::optional<Candidate> rates =
         choose(Part::rates, "rates", velocity ? topic_of(*velocity) : "");
@@ -225,11 +254,100 @@ class Planner {
     } else if (!is_asked(Part::commands)) {
       plan_.open.push_back(none_known(Part::commands, "commands"));
     }
-    plan_times(report_, {used_, moving_rate_hz_, command_rate_hz_}, plan_);
+    keep_armed();
+    const double duration_s = plan_.armed_only ? report_.autopilot.armed_s : report_.duration_s;
+    plan_times(report_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, plan_);
+    take_voltage();
     return std::move(plan_);
   }
 
  private:
+  // Of MAVLink's vehicles by MAV_TYPE_SUBMARINE; ArduSub alone has the parameter FRAME_CONFIG.
+  static bool is_submarine(const bag::BagReport& report) {
+    constexpr double kSubmarine = 12.0;
+    const auto topic = std::ranges::find(report.topics, "HEARTBEAT", &bag::TopicReport::name);
+    const bool has_type =
+        topic != report.topics.end() &&
+        std::ranges::any_of(topic->fields, [](const bag::FieldRange& field) {
+          return field.path == "type" && field.low == kSubmarine && field.high == kSubmarine;
+        });
+    return has_type || report.autopilot.parameters.contains("FRAME_CONFIG");
+  }
+
+  const MotorActuator* motor_at(const CandidateColumn& column) const {
+    const auto found = std::ranges::find(motors_, output_of(column), &MotorActuator::output);
+    return found == motors_.end() ? nullptr : &*found;
+  }
+
+  // Of an autopilot's outputs those that drive motors, in the motors' order, as the parameters tell
+  // them; without parameters the first eight.
+  void keep_thrusters() {
+    constexpr std::size_t kUsualOutputs = 8;
+    for (Candidate& one : all_) {
+      if (one.part != Part::commands) {
+        continue;
+      }
+      std::erase_if(one.columns, [&](const CandidateColumn& column) {
+        const std::size_t output = output_of(column);
+        return motors_.empty() ? output > kUsualOutputs : output > 0 && motor_at(column) == nullptr;
+      });
+      std::ranges::stable_sort(one.columns, {}, [&](const CandidateColumn& column) {
+        const MotorActuator* const motor = motor_at(column);
+        return motor == nullptr ? 0 : motor->motor;
+      });
+    }
+    std::erase_if(all_, [](const Candidate& one) { return one.columns.empty(); });
+    const std::string frame = sub_frame_name(report_.autopilot.parameters);
+    if (!frame.empty()) {
+      plan_.taken.push_back("ArduSub's frame: " + frame);
+    }
+    if (const std::string others = other_outputs_text(report_.autopilot.parameters);
+        !motors_.empty() && !others.empty()) {
+      plan_.remarks.push_back("no thrusters by SERVOn_FUNCTION, not taken: outputs " + others);
+    }
+  }
+
+  std::vector<std::string> command_names(const Candidate& one) const {
+    std::vector<std::string> names = short_names(one.columns);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (const MotorActuator* const motor = motor_at(one.columns[k])) {
+        names[k] = fmt::format("m{}", motor->motor);
+      }
+    }
+    return names;
+  }
+
+  void keep_armed() {
+    const bag::AutopilotReport& autopilot = report_.autopilot;
+    if (autopilot.was_armed && autopilot.was_disarmed) {
+      plan_.armed_only = true;
+      plan_.taken.push_back(fmt::format("rows while the motors are armed: {:.0f} s of {:.0f} s",
+                                        autopilot.armed_s, report_.duration_s));
+    } else if (autopilot.was_disarmed) {
+      plan_.remarks.emplace_back("the motors are never armed in this log; its rows are kept");
+    }
+  }
+
+  // Beside the rows; a message without the clock of the others can't be.
+  void take_voltage() {
+    const auto found = std::ranges::find(all_, Part::voltage, &Candidate::part);
+    if (found == all_.end() || plan_.targets.empty()) {
+      return;
+    }
+    const CandidateColumn& column = found->columns.front();
+    const bool is_taken = plan_.clock == bag::Clock::receive || column.stamps.has_value();
+    DraftPlan::Group group{.head = found->what + ": battery voltage, " + found->why,
+                           .lines = {},
+                           .is_taken = is_taken};
+    if (is_taken) {
+      add_line(group, "voltage", column);
+    } else {
+      group.head += "; it has no sender's time: change clock to \"receive\" to have it";
+      group.lines.push_back({"voltage", column.name, signal_why(column)});
+    }
+    plan_.states.push_back(std::move(group));
+  }
+
   static std::string topic_of(const Candidate& one) {
     for (const CandidateColumn& column : one.columns) {
       if (column.exists()) {
@@ -301,7 +419,7 @@ class Planner {
     }
     DraftPlan::Group group{.head = why + one.what + ": " + one.why, .lines = {}, .is_taken = false};
     const std::vector<std::string> names = one.part == Part::commands
-                                               ? short_names(one.columns)
+                                               ? command_names(one)
                                                : names_of_axes(one.part == Part::velocity ? 0 : 3);
     for (std::size_t k = 0; k < one.columns.size(); ++k) {
       if (one.columns[k].varies()) {
@@ -318,8 +436,15 @@ class Planner {
   void add_line(DraftPlan::Group& group, const std::string& name, const CandidateColumn& column) {
     group.lines.push_back({name, column.name, signal_why(column)});
     used_.push_back(column);
-    if (!column.unit.empty()) {
-      plan_.units.push_back({name, column.unit, {}});
+    std::string unit = column.unit;
+    if (const auto found = std::ranges::find(kFactors, column.unit, &UnitFactor::unit);
+        found != kFactors.end()) {
+      unit = found->si;
+      plan_.scales.push_back({name, fmt::format("{}", found->factor),
+                              fmt::format("{} to {}", found->unit, found->si)});
+    }
+    if (!unit.empty()) {
+      plan_.units.push_back({name, unit, {}});
     }
     plan_.taken.push_back(fmt::format("{} = {} ({})", name, column.name, signal_why(column)));
   }
@@ -347,7 +472,7 @@ class Planner {
       const bool moves =
           column.varies() &&
           (is_of_world || name != "w" || column.high - column.low > kTuning.least_motion * widest);
-      const bool is_steered = first == 0 || name == "r" || least == 0;
+      const bool is_steered = first == 0 || name == "r" || least == 0 || is_submarine_;
       if (moves && is_steered) {
         moving_.push_back(name);
         moving_rate_hz_ = std::min(moving_rate_hz_, column.rate_hz);
@@ -385,7 +510,10 @@ class Planner {
     for (std::size_t k = 0; k < names.size(); ++k) {
       const CandidateColumn& column = best->columns[k];
       add_line(group, names[k], column);
-      is_in_degrees = is_in_degrees || column.unit.starts_with("deg") || column.high > 7.0;
+      is_in_degrees = is_in_degrees || (column.unit != "deg" && column.high > 7.0);
+    }
+    if (is_submarine_ && is_angles) {
+      angles_ = {names[0], names[1]};
     }
     plan_.states.insert(plan_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
                         std::move(group));
@@ -403,6 +531,9 @@ class Planner {
       plan_.inputs.push_back(name);
       plan_.targets.push_back(name + "dot");
       plan_.derived.push_back({name + "dot", name, {}});
+    }
+    if (!moving_.empty()) {
+      plan_.inputs.insert(plan_.inputs.end(), angles_.begin(), angles_.end());
     }
     if (!moving_.empty() && !std::ranges::any_of(moving_, [](const auto& name) {
           return name == "u" || name == "v" || name == "w";
@@ -423,7 +554,7 @@ class Planner {
                       one.columns.size()));
       return;
     }
-    const std::vector<std::string> names = short_names(one.columns);
+    const std::vector<std::string> names = command_names(one);
     DraftPlan::Group group{.head = one.what.size() > 200 ? one.why : one.what + ": " + one.why,
                            .lines = {}};
     std::vector<std::string> still;
@@ -434,7 +565,12 @@ class Planner {
       }
       add_line(group, names[k], one.columns[k]);
       plan_.inputs.push_back(names[k]);
-      if (are_pulses(one.columns[k])) {
+      const MotorActuator* const motor = motor_at(one.columns[k]);
+      if (motor != nullptr && motor->direction < 0.0) {
+        plan_.scales.push_back({names[k], fmt::format("{{by = -1, about = {:g}}}", kNeutralPulseUs),
+                                fmt::format("MOT_{}_DIRECTION is -1", motor->motor)});
+      }
+      if (motor != nullptr || are_pulses(one.columns[k])) {
         plan_.taken.back() += fmt::format(", pulses that rest at {:g} µs", kNeutralPulseUs);
         plan_.neutrals.push_back({names[k], fmt::format("{:g}", kNeutralPulseUs),
                                   fmt::format("{:g} to {:g}: pulses of a servo in µs",
@@ -450,11 +586,14 @@ class Planner {
 
   const bag::BagReport& report_;
   std::vector<Candidate> all_;
+  std::vector<MotorActuator> motors_;
+  bool is_submarine_;  // roll and pitch are learned, too
   DraftPlan plan_;
   std::map<Part, std::string> still_;  // what is constant
   std::set<Part> asked_;               // which of two isn't told
   std::vector<CandidateColumn> used_;  // states and commands that are taken
   std::vector<std::string> moving_;    // velocities that are learned
+  std::vector<std::string> angles_;    // roll and pitch that are inputs
   std::size_t taken_groups_ = 0;       // of the states
   double moving_rate_hz_ = INFINITY;
   double command_rate_hz_ = INFINITY;

@@ -39,7 +39,9 @@ struct DraftPlan {
   std::vector<Group> states{};
   std::vector<Group> commands{};
   std::vector<Line> neutrals{};  ///< `from` is the command at rest
-  std::vector<Line> derived{};   ///< `from` is the differentiated column
+  std::vector<Line> scales{};    ///< `from` is the factor, in the syntax of [log.scale]
+  bool armed_only = false;
+  std::vector<Line> derived{};  ///< `from` is the differentiated column
 
   std::vector<std::string> taken{};    ///< as Draft::taken
   std::vector<std::string> remarks{};  ///< Draft::remarks

@@ -88,6 +88,9 @@ std::string keys_text(const DraftPlan& plan, const std::string& definitions) {
     text +=
         "filter = \"centred\"  # for logs; \"causal\" for a vehicle that learns while it moves\n";
   }
+  if (plan.armed_only) {
+    text += "armed_only = true  # messages while the motors are disarmed are left out\n";
+  }
   if (plan.is_of_bag && !definitions.empty()) {
     text += fmt::format("messages = {}\n",
                         quoted(std::filesystem::absolute(definitions).lexically_normal().string()));
@@ -130,6 +133,12 @@ std::string draft_text(const DraftPlan& plan, const std::string& log,
   }
   if (!plan.commands.empty()) {
     text += "\n[log.commands]  # hold until the next message\n" + groups_text(plan.commands);
+  }
+  if (!plan.scales.empty()) {
+    text += "\n[log.scale]  # about + by (value - about)\n";
+    for (const DraftPlan::Line& line : plan.scales) {
+      text += fmt::format("{} = {}  # {}\n", line.name, line.from, line.why);
+    }
   }
   if (!plan.neutrals.empty()) {
     text += "\n[log.actuators]  # commands at rest\n";

@@ -23,6 +23,7 @@ constexpr const char* kRates = "rates about the axes of the body";
 constexpr const char* kAttitude = "the autopilot's attitude";
 constexpr const char* kMotors =
     "what the motors are sent; 1500 µs is no thrust where it is a width";
+constexpr const char* kBattery = "a column beside; no input unless you name it one";
 constexpr const char* kSticks = "the pilot's sticks: a controller lies between them and the motors";
 constexpr const char* kWish = "what a controller is asked for: it lies between this and the motors";
 
@@ -54,6 +55,7 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
     {"uuv_sensor_ros_plugins_msgs/DVL", "", velocity, "velocity.{x,y,z}", "", 2, kDvl},
     {"sensor_msgs/Imu", "", rates, "angular_velocity.{x,y,z}", "FLU", 2, kRates},
     {"sensor_msgs/Imu", "", quaternion, "orientation.{w,x,y,z}", "ENU", 2, "the IMU's attitude"},
+    {"sensor_msgs/BatteryState", "", voltage, "voltage", "", 1, kBattery},
     {"mavros_msgs/RCOut", "", commands, "channels[0..7]", "", 1, kMotors},
     {"mavros_msgs/RCIn", "", commands, "channels[0..7]", "", 3, kSticks},
     {"mavros_msgs/OverrideRCIn", "", commands, "channels[0..7]", "", 3, kSticks},
@@ -68,11 +70,13 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
     {"ODOMETRY", "", velocity, "{vx,vy,vz}", "FRD", 1, kBody},
     {"ODOMETRY", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 1, kRates},
     {"LOCAL_POSITION_NED", "", velocity, "{vx,vy,vz}", "NED", 2, kEkf},
+    {"GLOBAL_POSITION_INT", "", velocity, "{vx,vy,vz}", "NED", 3, kEkf},
     {"ATTITUDE", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 1, kRates},
     {"ATTITUDE", "", angles, "{roll,pitch,yaw}", "NED", 1, kAttitude},
     {"ATTITUDE_QUATERNION", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 2, kRates},
     {"ATTITUDE_QUATERNION", "", quaternion, "q{1..4}", "NED", 2, kAttitude},
-    {"SERVO_OUTPUT_RAW", "", commands, "servo{1..8}_raw", "", 1, kMotors},
+    {"SERVO_OUTPUT_RAW", "", commands, "servo{1..16}_raw", "", 1, kMotors},
+    {"SYS_STATUS", "", voltage, "voltage_battery", "", 1, kBattery},
     {"MANUAL_CONTROL", "", commands, "{x,y,z,r}", "", 3, kSticks},
     {"RC_CHANNELS", "", commands, "chan{1..8}_raw", "", 4, kSticks},
     // ArduPilot's DataFlash
@@ -83,7 +87,8 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
     {"ATT", "", angles, "{Roll,Pitch,Yaw}", "NED", 3, kAttitude},
     {"RATE", "", rates, "{R,P,Y}", "FRD", 1, kRates},
     {"IMU", "", rates, "{GyrX,GyrY,GyrZ}", "FRD", 2, kRates},
-    {"RCOU", "", commands, "C{1..8}", "", 1, kMotors},
+    {"RCOU", "", commands, "C{1..14}", "", 1, kMotors},
+    {"BAT", "", voltage, "Volt", "", 1, kBattery},
     {"RCIN", "", commands, "C{1..8}", "", 3, kSticks},
     // PX4's ULog
     {"vehicle_local_position", "", velocity, "{vx,vy,vz}", "NED", 1, kEkf},

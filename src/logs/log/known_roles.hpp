@@ -17,6 +17,7 @@ enum class Part {
   angles,      ///< roll, pitch and yaw
   quaternion,  ///< of the attitude: w, x, y, z
   commands,    ///< of thrusters and fins, any number
+  voltage,     ///< of the battery
 };
 
 /// A type of messages with known fields. known_roles.cpp has the table; a new type is a new line.
@@ -24,7 +25,7 @@ struct KnownMessage {
   std::string_view type;   ///< "nav_msgs/Odometry" (without "/msg"), "ATTITUDE"
   std::string_view topic;  ///< required part of the topic's name, in lower case; "": any name
   Part part;
-  std::string_view fields;  ///< "twist.linear.{x,y,z}", "servo{1..8}_raw", "velocity[0..15]"
+  std::string_view fields;  ///< "twist.linear.{x,y,z}", "servo{1..16}_raw", "velocity[0..15]"
   std::string_view
       frame;             ///< FLU, FRD, ENU or NED; of an attitude: the reference frame; "": unknown
   int rank;              ///< the least rank is taken; equal ranks are equally likely

@@ -77,6 +77,7 @@ class LogConfigReader {
          [&](const TomlNode& value) { roles().ignored = file::texts_of(value, kColumns); }},
         {"states", [&](const TomlNode& value) { read_sources(value, Interpolation::line); }},
         {"commands", [&](const TomlNode& value) { read_sources(value, Interpolation::hold); }},
+        {"scale", [&](const TomlNode& value) { read_scales(value); }},
         {"actuators", [&](const TomlNode& value) { read_actuators(value); }},
         {"derived", [&](const TomlNode& value) { read_derived(value); }},
         {"clock",
@@ -84,6 +85,7 @@ class LogConfigReader {
            config_.clock =
                choice(value, {"receive", "header"}) == 0 ? bag::Clock::receive : bag::Clock::header;
          }},
+        {"armed_only", [&](const TomlNode& value) { config_.armed_only = value.flag(); }},
         {"messages",
          [&](const TomlNode& value) {
            config_.messages =
@@ -160,6 +162,24 @@ class LogConfigReader {
            .from = source.text("a topic and field, as in \"/odom:twist.twist.linear.x\""),
            .between = between});
       config_.places.emplace(plan().sources.back().from, source.place());
+    }
+  }
+
+  // phi = 0.01745, m2 = {by = -1, about = 1500}
+  void read_scales(const file::TomlNode& value) {
+    for (const file::TomlNode& scale :
+         value.members("a table of factors, as in {phi = 0.01745, m2 = {by = -1, about = 1500}}")) {
+      SamplingPlan::Source& source = require_source(scale, scale.key());
+      const bool is_table = scale.type() == file::TomlNode::Type::table;
+      if (is_table) {
+        scale.table({"by", "about"});
+        source.about = scale.has("about") ? scale["about"].number() : 0.0;
+      }
+      source.scale =
+          is_table ? scale["by"].number() : scale.number("a factor, or a table by, about");
+      if (!std::isfinite(source.scale) || source.scale == 0.0 || !std::isfinite(source.about)) {
+        scale.refuse("has to be finite, and the factor not 0");
+      }
     }
   }
 
@@ -298,8 +318,9 @@ void convert_sources(const LogConfig& config, const Roles& roles, SamplingPlan& 
   std::vector<std::string> converted;
   for (StreamPlan::Source& source : plan.sources) {
     if (const auto unit = units.find(source.name); unit != units.end()) {
-      source.scale = si_unit(config.source, source.name, unit->second).second;
-      converted.insert(converted.end(), source.scale != 1.0 ? 1 : 0, source.name);
+      const double factor = si_unit(config.source, source.name, unit->second).second;
+      source.scale *= factor;  // the unit is of what [log.scale] gives
+      converted.insert(converted.end(), factor != 1.0 ? 1 : 0, source.name);
     }
   }
   for (StreamPlan::Vector& vector : plan.vectors) {

@@ -20,6 +20,7 @@ struct LogConfig {
   Roles roles;
   SamplingPlan plan;  ///< without rate and responses, given by the roles
   bag::Clock clock = bag::Clock::receive;
+  bool armed_only = false;  ///< leave out messages while motors are disarmed (AutopilotState)
   std::filesystem::path messages;         ///< folder of .msg files, or empty
   std::map<std::string, Place> places{};  ///< in the file, of each source's column
 

@@ -13,7 +13,7 @@ namespace kelpie::log {
 struct LogSource {
   std::string path;
   std::string definitions{};  ///< folder of .msg files, for types without definition in the bag
-  bool recover = false;       ///< read a damaged bag as far as possible
+  bag::ReadMode mode = bag::ReadMode::usual;  ///< treatment of damage in a recording
 
   /// Throws as bag::open_bag() does.
   std::unique_ptr<bag::MessageReader> open_bag(const bag::RowTimes& times = {}) const;

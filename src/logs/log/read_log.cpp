@@ -87,7 +87,8 @@ std::map<std::string, std::string> all_units(std::map<std::string, std::string> 
 struct BagSignals {
   std::vector<Signal> signals;
   std::int64_t origin_ns = std::numeric_limits<std::int64_t>::max();  // where their times begin
-  std::string losses;  // what of a damaged bag was lost
+  std::string losses;        // what of a damaged bag was lost
+  std::size_t disarmed = 0;  // messages left out
   std::map<std::string, std::string> units;
 };
 
@@ -102,16 +103,20 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
                                                                        : source.definitions);
   const std::unique_ptr<bag::MessageReader> bag = source.open_bag(times);
-  const std::vector<bag::Series> all = bag::read_series(*bag, definitions, columns, config.clock);
+  const std::vector<bag::Series> all =
+      bag::read_series(*bag, definitions, columns, config.clock, config.armed_only);
   BagSignals found;
   found.losses = bag->losses_text();
   for (const bag::Series& series : all) {
     found.origin_ns = std::min(found.origin_ns, begin_ns(series));
+    found.disarmed += series.disarmed;
   }
   for (const SamplingPlan::Source& column : config.plan.sources) {
     const bag::Series& series = bag::series_with(all, column.from);
     found.signals.push_back(signal_of(column, series, found.origin_ns));
-    add_unit(series, column.from, column.name, found.units);
+    if (std::abs(column.scale) == 1.0) {  // else the user's units say what the scale gives
+      add_unit(series, column.from, column.name, found.units);
+    }
   }
   return found;
 }
@@ -224,6 +229,7 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
     found.signals = signals_of_table(table, plan, times.time);
   }
   log.losses = std::move(found.losses);
+  log.disarmed = found.disarmed;
   log.units = all_units(std::move(found.units), plan, log.roles);
   for (auto& [column, unit] : log.roles.units) {
     unit = log.units[column];  // of the rows
@@ -239,7 +245,6 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
 }  // namespace
 
 std::unique_ptr<bag::MessageReader> LogSource::open_bag(const bag::RowTimes& times) const {
-  const bag::ReadMode mode = recover ? bag::ReadMode::recover : bag::ReadMode::strict;
   return bag::open_bag(path, mode, times);
 }
 

@@ -22,6 +22,7 @@ struct Log {
   Roles roles;                ///< as given, with the time and rate of the table
   SamplingReport sampling{};  ///< result of sampling; no sources: the log was a table of samples
   std::string losses{};       ///< losses of a damaged bag, for the user: a line each
+  std::size_t disarmed = 0;   ///< messages left out because motors were disarmed
   /// Units of a bag's columns and of Roles::units, for display; units of a CSV are in Table::units.
   std::map<std::string, std::string> units{};
   std::optional<Draft> draft{};  ///< the draft used without configuration

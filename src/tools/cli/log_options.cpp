@@ -256,8 +256,15 @@ void add_bag_options(CLI::App& command, log::LogSource& source, const std::strin
       .add_option("--msg-dir", source.definitions,
                   "folder of .msg files, for types that the bag doesn't define")
       ->type_name("FOLDER");
-  command.add_flag("--recover", source.recover,
-                   "read what can be read of a damaged bag, and say what was lost");
+  const auto add_mode = [&](const char* flag, bag::ReadMode mode, const char* help) {
+    return command.add_flag_callback(
+        flag, [&source, mode] { source.mode = mode; }, help);
+  };
+  add_mode("--recover", bag::ReadMode::recover,
+           "read what can be read of a damaged bag, and say what was lost")
+      ->excludes(
+          add_mode("--strict", bag::ReadMode::strict,
+                   "refuse messages with a wrong checksum, which are passed over otherwise"));
 }
 
 log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
@@ -266,6 +273,9 @@ log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
   warn("{}", log.losses);
   if (log.draft) {
     say("{}", log.draft->summary(source.path));
+  }
+  if (log.disarmed > 0) {
+    say("left out: {} messages while the motors were disarmed (armed_only)\n", log.disarmed);
   }
   say("{}", report::sampling_table(log.sampling));
   return log;

@@ -39,7 +39,8 @@ log::Dataset read(const Source& source, const std::string& file,
                   const std::string& held_out_column) {
   log::Roles roles = source.log.roles;
   roles.held_out = held_out_column;
-  return log::read_log({.path = file, .recover = source.recover}, source.log, roles).dataset();
+  const bag::ReadMode mode = source.recover ? bag::ReadMode::recover : bag::ReadMode::usual;
+  return log::read_log({.path = file, .mode = mode}, source.log, roles).dataset();
 }
 
 // The largest of the axes; the number of axes is unknown before the log is read.

@@ -85,6 +85,24 @@ TEST(SampleStream, ARowComesWithTheLastMessageItTakes) {
   EXPECT_EQ(rows[0].x[1], 5.0);
 }
 
+TEST(SampleStream, SamplesAreScaledAboutAPoint) {
+  StreamPlan plan = plan_of();
+  plan.sources[0].scale = 0.5;
+  plan.sources[1].scale = -1.0;
+  plan.sources[1].about = 1500.0;
+  SampleStream stream(plan);
+  for (int k = 0; k < 40; ++k) {
+    stream.feed(0, 0.05 * k, 2.0 * 0.05 * k);
+    stream.feed(1, 0.05 * k, 1600.0);
+  }
+  stream.finish();
+  const std::vector<Row> rows = rows_of(stream);
+  ASSERT_GT(rows.size(), 10U);
+  EXPECT_NEAR(rows[10].x[0], rows[10].t, 1e-9);
+  EXPECT_EQ(rows[10].x[1], 1400.0);
+  EXPECT_NEAR(rows[10].y[0], 1.0, 1e-9);
+}
+
 TEST(SampleStream, ACentredDerivativeWaitsForHalfItsWindow) {
   SampleStream stream(plan_of(FilterWindow::centred));
   drive(stream, 0.0, 5.0);

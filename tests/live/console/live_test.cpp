@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "bag/ardusub_drive.hpp"
 #include "cli/running.hpp"
 #include "console/live_command.hpp"
 #include "format/checkpoint_file.hpp"
@@ -107,6 +108,19 @@ TEST_F(LiveCommand, LogsOfAutopilotsEndWithTheModelThatLearnGives) {
         run("live --config x.toml --from '" + log.string() + "' --speed max --fresh --out out");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     expect_model_of_learn("out", "auto", "'" + log.string() + "'");
+    fs::remove(folder_ / "x.toml");
+  }
+}
+
+// Armed for a while only, with parameters that reverse a motor.
+TEST_F(LiveCommand, ADriveOfArdusubEndsWithTheModelThatLearnGives) {
+  write("drive.tlog", testing::ArdusubDrive::tlog().text());
+  write("drive.BIN", testing::ArdusubDrive::bin());
+  for (const std::string name : {"drive.tlog", "drive.BIN"}) {
+    testing::succeeded(run("inspect " + name + " --template x.toml"));
+    testing::succeeded(
+        run("live --config x.toml --from " + name + " --speed max --fresh --out out"));
+    expect_model_of_learn("out", "auto", name);
     fs::remove(folder_ / "x.toml");
   }
 }

@@ -9,6 +9,8 @@
 
 #include "bag/bags.hpp"
 #include "bag/cdr.hpp"
+#include "bag/open_bag.hpp"
+#include "bag/series.hpp"
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
 
@@ -147,6 +149,36 @@ RC_GTEST_PROP(MessageBuilder, AnyNumbersInAnySequencesAreReadBack,
   builder.set("last", -1.5);
   expected.push_back(-1.5);
   RC_ASSERT(read_back(type, builder) == expected);
+}
+
+// A .db3 file of Humble has no definitions.
+TEST(MessageBuilder, ABagOfAVehicleWithMavrosIsReadWithoutDefinitions) {
+  const std::vector<bag::Topic> topics{{.name = "/mavros/rc/out", .type = "mavros_msgs/msg/RCOut"},
+                                       {.name = "/dvl", .type = "dvl_msgs/msg/DVL"},
+                                       {.name = "/tf", .type = "tf2_msgs/msg/TFMessage"}};
+  bag::MessageBuilder pulses(type_of(topics[0].type));
+  pulses.set("channels", std::vector<double>{1500, 1612, 1388});
+  bag::MessageBuilder dvl(type_of(topics[1].type));
+  dvl.resize("beams", 4);
+  dvl.set("velocity.x", 0.4);
+  dvl.set("form", "json_v3.1");
+  bag::MessageBuilder transforms(type_of(topics[2].type));
+  transforms.resize("transforms", 1);
+  transforms.set("transforms[0].child_frame_id", "base_link");
+  transforms.set("transforms[0].transform.rotation.w", 0.5);
+  const testing::TemporaryFolder folder;
+  testing::write_db3(folder / "x.db3", topics,
+                     {{0, testing::kSecond, bytes_of(pulses)},
+                      {1, testing::kSecond, bytes_of(dvl)},
+                      {2, testing::kSecond, bytes_of(transforms)}});
+  const std::vector<std::string> columns{"/mavros/rc/out:channels[1]", "/dvl:velocity.x",
+                                         "/tf:transforms[0].transform.rotation.w"};
+  const auto bag = bag::open_bag(folder / "x.db3");
+  const std::vector<bag::Series> all =
+      bag::read_series(*bag, bag::MessageDefinitions(), columns, bag::Clock::receive);
+  EXPECT_EQ(all[0].values[0], std::vector<double>{1612});
+  EXPECT_EQ(all[1].values[0], std::vector<double>{0.4});
+  EXPECT_EQ(all[2].values[0], std::vector<double>{0.5});
 }
 
 }  // namespace

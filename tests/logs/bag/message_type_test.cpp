@@ -54,6 +54,30 @@ TEST(MessageType, BuiltInTypesAreThoseAVehicleLogs) {
                                       "layout.dim[].stride", "layout.data_offset", "data[]"}));
 }
 
+TEST(MessageType, BuiltInTypesAreThoseOfUnderwaterVehicles) {
+  const bag::MessageDefinitions definitions;
+  // Leaves in the order of storage: a wrong or missing field shifts the last one.
+  for (const auto& [name, path, leaf] :
+       {std::tuple("geometry_msgs/msg/PoseStamped", "pose.orientation.w", 9U),
+        std::tuple("geometry_msgs/msg/PoseWithCovarianceStamped", "pose.covariance[]", 10U),
+        std::tuple("geometry_msgs/msg/TransformStamped", "transform.rotation.w", 10U),
+        std::tuple("tf2_msgs/msg/TFMessage", "transforms[].transform.rotation.w", 10U),
+        std::tuple("sensor_msgs/msg/BatteryState", "serial_number", 17U),
+        std::tuple("sensor_msgs/msg/FluidPressure", "variance", 4U),
+        std::tuple("sensor_msgs/msg/NavSatFix", "position_covariance_type", 9U),
+        std::tuple("mavros_msgs/msg/RCOut", "channels[]", 3U),
+        std::tuple("mavros_msgs/msg/RCIn", "channels[]", 4U),
+        std::tuple("mavros_msgs/msg/OverrideRCIn", "channels[]", 0U),
+        std::tuple("mavros_msgs/msg/State", "system_status", 8U),
+        std::tuple("marine_acoustic_msgs/msg/Dvl", "beam_velocity_covar[]", 23U),
+        std::tuple("dvl_msgs/msg/DVL", "form", 20U),
+        std::tuple("waterlinked_a50_ros_driver/msg/DVL", "form", 17U),
+        std::tuple("uuv_sensor_ros_plugins_msgs/msg/DVL", "beams[].pose.pose.orientation.w",
+                   21U)}) {
+    EXPECT_EQ(definitions.type(name).find(path), leaf) << name;
+  }
+}
+
 TEST(MessageType, FilesOfAFolderAreFoundInAnyOfItsLayouts) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "a/msg");

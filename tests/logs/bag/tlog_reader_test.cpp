@@ -111,13 +111,13 @@ TEST(TlogReader, UnknownMessagesAreCountedAsTopicsThatCannotBeDecoded) {
   Tlog log = small_tlog(3);
   for (int k = 0; k < 2; ++k) {
     log.add(kTlogBeginUs, testing::other_frame(29'999, 7));
-    log.add(kTlogBeginUs, testing::other_frame(30, 40));  // by another definition of ATTITUDE
+    log.add(kTlogBeginUs, testing::other_frame(31, 40));  // another definition of a known one
   }
   const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::strict);
   const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
   ASSERT_EQ(report.topics.size(), 4U);
   EXPECT_EQ(report.topics[0].name, "/mavlink/1/1/29999");
-  EXPECT_EQ(report.topics[1].name, "/mavlink/1/1/30");
+  EXPECT_EQ(report.topics[1].name, "/mavlink/1/1/31");
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(report.topics[k].messages, 2U);
     EXPECT_NE(report.topics[k].not_decoded.find("is an unknown MAVLink message"),
@@ -150,8 +150,27 @@ TEST(TlogReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {
     const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::recover);
     const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
     EXPECT_EQ(report.messages, 20U) << within;
-    EXPECT_EQ(report.loss_count, 1U) << within;
+    EXPECT_EQ(report.loss_count + report.passed_over.size(), 1U) << within;
   }
+}
+
+TEST(TlogReader, AWrongChecksumCostsItsFrameAloneAndIsCounted) {
+  Tlog log = small_tlog(20);
+  for (const std::size_t frame : {5U, 6U, 9U}) {
+    log.bytes()[log.offsets()[frame] + 20] ^= std::byte{0x55};
+  }
+  const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::usual);
+  const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
+  EXPECT_EQ(report.messages, 18U);
+  EXPECT_EQ(report.loss_count, 0U);
+  EXPECT_EQ(report.passed_over, (std::map<std::string, std::size_t>{{"ATTITUDE", 3}}));
+  EXPECT_EQ(bag->losses_text(),
+            "passed over: 3 messages with a wrong checksum, 3 of ATTITUDE (--strict refuses)\n");
+  EXPECT_NE(refusal(log.bytes()).find("checksum of message 30"), std::string::npos);
+  log.bytes().resize(log.bytes().size() - 1);  // other damage is refused as ever
+  EXPECT_THROW(bag::inspect_bag(*bag::read_tlog(log.bytes(), "x.tlog", ReadMode::usual),
+                                bag::MessageDefinitions()),
+               InputError);
 }
 
 TEST(TlogReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
@@ -275,6 +294,76 @@ TEST(TlogReader, EveryValueOfARealLogIsWhatAnotherImplementationReads) {
     EXPECT_EQ(found[type].first, values.first) << type;
     EXPECT_EQ(found[type].second.state, values.second) << type;
   }
+}
+
+// Of `node scripts/mavlink_peer.mjs count blueos_badcrc.tlog`. BlueOS has damaged DISTANCE_SENSORs
+// (its issue 1740).
+TEST(TlogReader, ARealLogOfBlueOsHasTheMessagesThatAnotherImplementationCounts) {
+  const std::filesystem::path file = testing::data_file("logs/blueos_badcrc.tlog");
+  if (file.empty()) {
+    GTEST_SKIP() << "the log isn't there";
+  }
+  const std::map<std::string, std::size_t> expected{
+      {"ATTITUDE", 6210},
+      {"VFR_HUD", 3117},
+      {"AHRS2", 6210},
+      {"HEARTBEAT", 1257},
+      {"POWER_STATUS", 627},
+      {"MEMINFO", 627},
+      {"NAV_CONTROLLER_OUTPUT", 627},
+      {"MISSION_CURRENT", 627},
+      {"SERVO_OUTPUT_RAW", 627},
+      {"RC_CHANNELS", 627},
+      {"RAW_IMU", 627},
+      {"SCALED_IMU2", 627},
+      {"SCALED_PRESSURE", 627},
+      {"SCALED_PRESSURE2", 627},
+      {"GPS_RAW_INT", 627},
+      {"NAMED_VALUE_FLOAT", 5016},
+      {"COMMAND_LONG", 9},
+      {"COMMAND_ACK", 13},
+      {"AUTOPILOT_VERSION", 2},
+      {"GLOBAL_POSITION_INT", 938},
+      {"SYS_STATUS", 898},
+      {"SYSTEM_TIME", 940},
+      {"AHRS", 938},
+      {"HWSTATUS", 938},
+      {"MOUNT_STATUS", 938},
+      {"EKF_STATUS_REPORT", 938},
+      {"VIBRATION", 938},
+      {"BATTERY_STATUS", 938},
+      {"DISTANCE_SENSOR", 919},
+      {"REQUEST_DATA_STREAM", 35},
+      {"MANUAL_CONTROL", 7463},
+      {"PARAM_REQUEST_LIST", 1},
+      {"PARAM_EXT_REQUEST_LIST", 1},
+      {"PARAM_EXT_VALUE", 14},
+      {"PARAM_VALUE", 4443},
+      {"STATUSTEXT", 28},
+      {"SENSOR_OFFSETS", 57},
+      {"MISSION_REQUEST_LIST", 2},
+      {"MISSION_COUNT", 2},
+      {"MISSION_ACK", 2},
+      {"STORAGE_INFORMATION", 1},
+      {"VIDEO_STREAM_STATUS", 1},
+      {"TIMESYNC", 31},
+      {"PARAM_SET", 1},
+  };
+  const bag::BagReport report = bag::inspect_bag(*bag::open_bag(file), bag::MessageDefinitions());
+  std::map<std::string, std::size_t> found;
+  std::size_t unknown = 0;
+  for (const bag::TopicReport& topic : report.topics) {
+    (topic.not_decoded.empty() ? found[topic.type] : unknown) += topic.messages;
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(report.passed_over.at("/mavlink/1/194/DISTANCE_SENSOR"), 1949U);
+  std::size_t passed_over = 0;
+  for (const auto& [topic, count] : report.passed_over) {
+    passed_over += count;
+  }
+  EXPECT_EQ(unknown + passed_over, 1967U);
+  EXPECT_THROW(bag::inspect_bag(*bag::open_bag(file, ReadMode::strict), bag::MessageDefinitions()),
+               InputError);
 }
 
 }  // namespace

@@ -185,6 +185,14 @@ TEST(Draft, TakesTheFirstOfSeveralInstancesAndTellsDegrees) {
   const log::LogConfig config = found.config("dive.BIN");
   EXPECT_EQ(config.plan.sources[config.plan.source("u")].from, "XKF1[0]:VN");
   EXPECT_TRUE(config.plan.vectors.at(0).is_in_degrees);
+  for (bag::FieldRange& field : first.fields) {
+    field.unit = field.path.starts_with("V") ? "m/s" : "deg";
+  }
+  const log::LogConfig turned =
+      draft({first, topic("RCOU", "RCOU", {"C1", "C2"})}).config("dive.BIN");
+  EXPECT_FALSE(turned.plan.vectors.at(0).is_in_degrees);
+  EXPECT_NEAR(turned.plan.sources[turned.plan.source("psi")].scale, std::acos(-1.0) / 180.0, 1e-12);
+  EXPECT_EQ(turned.roles.units.at("psi"), "rad");
 }
 
 TEST(Draft, TakesTopicsOfOneNumberByTheirNames) {

@@ -161,8 +161,8 @@ TEST_F(ReadLog, WhatADamagedBagLostIsTold) {
   const std::string file = write("cut.mcap", bytes.substr(0, bytes.size() - 100));
   const Names columns{"/cmd:linear.x"};
   EXPECT_THROW(log::read_columns({.path = file}, columns, bag::Clock::receive), InputError);
-  const log::Log log =
-      log::read_columns({.path = file, .recover = true}, columns, bag::Clock::receive);
+  const log::Log log = log::read_columns({.path = file, .mode = bag::ReadMode::recover}, columns,
+                                         bag::Clock::receive);
   EXPECT_TRUE(log.losses.starts_with("lost: ")) << log.losses;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "bag/ardusub_drive.hpp"
 #include "cli/command.hpp"
 
 namespace kelpie::draft_command_test {
@@ -72,6 +73,34 @@ TEST_F(DraftCommand, ATemplateThatIsNotCompleteSaysWhatIsOpen) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(content("vehicle.toml").find("# - no commands are known"), std::string::npos);
   testing::expect_refused(run("inspect raw.csv --template raw.csv"), "--template: would overwrite");
+}
+
+TEST_F(DraftCommand, ADriveOfArdusubIsLearnedFromEitherRecordingWithoutAConfiguration) {
+  write("drive.tlog", testing::ArdusubDrive::tlog().text());
+  write("drive.BIN", testing::ArdusubDrive::bin());
+  for (const std::string name : {"drive.tlog", "drive.BIN"}) {
+    const Outcome outcome =
+        testing::succeeded(run("learn " + name + " --verbose --out " + name + ".out"));
+    for (const char* const said :
+         {"ArduSub's frame: vectored, 6 motors", "rows while the motors are armed: 100 s of 140 s",
+          "messages while the motors were disarmed", "9 (lights 1)"}) {
+      EXPECT_NE(outcome.out.find(said), std::string::npos) << name << said << outcome.out;
+    }
+    const auto model = parsed(name + ".out/model.json");
+    EXPECT_EQ(model.at("inputs").size(), 14U) << name;
+  }
+}
+
+TEST_F(DraftCommand, WrongChecksumsAreToldInOneLineAndRefusedByStrict) {
+  testing::Tlog log = testing::ArdusubDrive::tlog();
+  log.bytes()[log.offsets()[500] + 20] ^= std::byte{0x55};
+  write("drive.tlog", log.text());
+  Outcome outcome = testing::succeeded(run("inspect drive.tlog --json drive.json"));
+  EXPECT_NE(outcome.err.find("passed over: 1 message with a wrong checksum"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(parsed("drive.json").at("passed_over").size(), 1U);
+  testing::expect_refused(run("inspect drive.tlog --strict"), "the checksum of message");
+  EXPECT_EQ(run("inspect drive.tlog --strict --recover").exit_code, 2);
 }
 
 TEST_F(DraftCommand, RealLogsAreLearnedInOneCommand) {
