@@ -280,6 +280,8 @@ void add_live(CLI::App& app) {
                       "host:port (docs/live.md), over live.page");
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
+  add_examples(command, "live --config examples/bluerov.toml --page 8080",
+               "live --config vehicle.toml --from dive.bag --speed 10");
 }
 
 }  // namespace kelpie::cli

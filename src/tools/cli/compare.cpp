@@ -119,6 +119,8 @@ void add_compare(CLI::App& app) {
   add_seed(command, options->seed);
   add_threads(command, options->threads);
   add_out(command, options->out, "folder for compare.json and compare.html");
+  add_examples(command, "compare dive.csv --rate 4",
+               "compare dive.bag --config vehicle.toml --split tail");
 }
 
 }  // namespace kelpie::cli

@@ -169,6 +169,8 @@ void add_identify(CLI::App& app) {
       ->type_name("{FLU,FRD}");
   add_seed(command, options->seed);
   add_out(command, options->out, "folder for the parameters and files of simulators");
+  add_examples(command, "identify dive.csv --rate 4 --units th1=rev/s,th2=rev/s,th3=rev/s",
+               "identify dive.bag --config vehicle.toml --mass 32.5 --frame FRD");
 }
 
 }  // namespace kelpie::cli

@@ -344,6 +344,8 @@ void add_learn(CLI::App& app) {
       ->add_flag("--verbose", options->verbose,
                  "print every table: members, intervals, coefficients, solver")
       ->excludes(quiet);
+  add_examples(command, "learn dive.csv --rate 4",
+               "learn dive.bag --config vehicle.toml --split tail --out out/tail");
 }
 
 }  // namespace kelpie::cli

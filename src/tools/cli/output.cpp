@@ -51,8 +51,17 @@ void refuse_special(std::string_view option, const fs::path& file) {
 }
 
 bool silent = false;
+std::string* kept = nullptr;
 
 }  // namespace
+
+KeptOutput::KeptOutput() {
+  kept = &text_;
+}
+
+KeptOutput::~KeptOutput() {
+  kept = nullptr;
+}
 
 void be_silent() {
   silent = true;
@@ -70,7 +79,9 @@ void print_safely(std::FILE* stream, std::string_view text) {
 }
 
 void print_unless_silent(std::FILE* stream, std::string_view text) {
-  if (!silent) {
+  if (kept != nullptr) {
+    kept->append(text);
+  } else if (!silent) {
     print_safely(stream, text);
   }
 }

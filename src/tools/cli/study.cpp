@@ -220,6 +220,8 @@ void add_study(CLI::App& app) {
       "--merge", options->merge, "run nothing; write the result of parts that have ended");
   part->excludes(merge)->excludes(against)->excludes(worse);
   command->callback([options] { run_study(*options); });
+  add_examples(command, "study fleet.toml",
+               "study fleet.toml --against out/before/study.json --fail-if-worse 0.02");
 }
 
 }  // namespace kelpie::cli
