@@ -134,8 +134,7 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
       'import kelpie; print(kelpie.__version__)')" = "$version" ] || fail "python3-kelpie isn't imported"
   fi
   if command -v lintian >/dev/null; then
-    lintian --fail-on error,warning --suppress-tags initial-upload-closes-no-bugs \
-      "$stage"/deb/*.deb >"$stage/log" 2>&1 || fail "lintian"
+    run lintian --allow-root --fail-on error "$stage"/deb/*.deb
   fi
   if [ -e "$build/libkelpie_mpi.so" ]; then
     deb=$(find "$stage/deb" -maxdepth 1 -name "kelpie-mpi_*.deb")
