@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
-from . import _frames, _kelpie, _settings
+from . import _kelpie, _settings
 from ._clock import TIMES, Clock, index_times
 from ._estimators import DynamicsModel
 from ._log import existing

@@ -88,10 +88,9 @@ py::tuple split_rows(const std::vector<int>& configurations, const std::string& 
   settings.block_rows = block_rows;
   settings.every = every;
   const study::Split split = study::make_split(data, settings);
-  return py::make_tuple(Numbers(static_cast<py::ssize_t>(split.training.size()),
-                                split.training.data()),
-                        Numbers(static_cast<py::ssize_t>(split.held_out.size()),
-                                split.held_out.data()));
+  return py::make_tuple(
+      Numbers(static_cast<py::ssize_t>(split.training.size()), split.training.data()),
+      Numbers(static_cast<py::ssize_t>(split.held_out.size()), split.held_out.data()));
 }
 
 }  // namespace

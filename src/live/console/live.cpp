@@ -48,9 +48,10 @@ struct LiveArguments {
 // The file's, with the options over it.
 live::Configuration configuration_of(const LiveArguments& options) {
   if (options.config.empty() && options.replay.path.empty()) {
-    throw InputError("--config",
-                     "is missing: what the messages of a connection mean, for which `kelpie inspect "
-                     "LOG --template` writes a draft; a recording needs none: --replay LOG");
+    throw InputError(
+        "--config",
+        "is missing: what the messages of a connection mean, for which `kelpie inspect "
+        "LOG --template` writes a draft; a recording needs none: --replay LOG");
   }
   std::string summary;
   live::Configuration configuration =
@@ -269,8 +270,9 @@ void add_live(CLI::App& app) {
       ->add_option_function<std::string>(
           "--from",
           [options = options](const std::string& file) {
-            warn("kelpie: --from of `kelpie live` is called --replay; a later version takes --from "
-                 "for a model to go on from, as `kelpie learn` does\n");
+            warn(
+                "kelpie: --from of `kelpie live` is called --replay; a later version takes --from "
+                "for a model to go on from, as `kelpie learn` does\n");
             options->replay.path = file;
           },
           "--replay, as it was called")

@@ -165,11 +165,8 @@ std::string names_of(const std::array<std::string, 3>& columns) {
 
 Configuration configuration_of(const file::TomlNode& root, const std::string& file,
                                const std::vector<std::string>& set) {
-  Configuration configuration{.file = file,
-                              .log = log::read_log_config(root),
-                              .plan = {},
-                              .settings = {},
-                              .live = {}};
+  Configuration configuration{
+      .file = file, .log = log::read_log_config(root), .plan = {}, .settings = {}, .live = {}};
   configuration.plan = plan_of(configuration.log);
   configuration.settings = format::make_settings(format::read_settings_file(root), set,
                                                  configuration.plan.targets.size());
@@ -259,8 +256,7 @@ Configuration draft_configuration(const log::LogSource& source, const std::vecto
                                   std::string& summary) {
   const log::Draft draft = log::draft_of(source);
   if (!draft.is_complete()) {
-    throw InputError({.file = source.path, .line = 0, .field = {}},
-                     draft.unclear(source.path));
+    throw InputError({.file = source.path, .line = 0, .field = {}}, draft.unclear(source.path));
   }
   summary = draft.summary(source.path);
   const std::string name = "the draft for " + source.path;

@@ -46,8 +46,8 @@ LogConfig Draft::config(const std::string& source) const {
 }
 
 std::string Draft::unclear(const std::string& source) const {
-  return "the signals to use are unclear: " + join_text(open, "; ") + " (`kelpie inspect " + source +
-         " --template vehicle.toml` writes what was found; give it by --config)";
+  return "the signals to use are unclear: " + join_text(open, "; ") + " (`kelpie inspect " +
+         source + " --template vehicle.toml` writes what was found; give it by --config)";
 }
 
 std::string Draft::summary(const std::string& source) const {

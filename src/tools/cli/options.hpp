@@ -44,8 +44,8 @@ inline constexpr const char* kLearnedModel = "out/learn/model.json";
 /// An option or argument for a model of `kelpie learn`, by default kLearnedModel.
 void add_model(CLI::App* command, const std::string& name, std::string& model);
 
-/// Reads the model of add_model(). Throws InputError as format::read_model() does; a missing file is
-/// told with the command that makes one.
+/// Reads the model of add_model(). Throws InputError as format::read_model() does; a missing file
+/// is told with the command that makes one.
 TrainedModel read_given_model(const std::string& model);
 
 /// Two command lines, without "kelpie ", for the end of the help.

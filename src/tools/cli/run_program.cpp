@@ -133,8 +133,9 @@ std::string in_lines(const std::string& text, std::size_t indentation) {
   return chart::wrapped(text, help_width() - indentation);
 }
 
-// Wrapped at the terminal's width; and `--help-all` in the form that help2man makes a manual page of: a heading in stars is a section, a
-// line that ends in a colon with indented ones below a subsection.
+// Wrapped at the terminal's width; and `--help-all` in the form that help2man makes a manual page
+// of: a heading in stars is a section, a line that ends in a colon with indented ones below a
+// subsection.
 class HelpFormat final : public CLI::Formatter {
  public:
   std::string make_option_desc(const CLI::Option* option) const override {
@@ -227,7 +228,8 @@ int run_program(CLI::App& app, int argc, char** argv) {
 void run_command(CLI::App& app, const std::vector<std::string>& words) {
   check_numbers(app);
   try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last first
+    app.parse(
+        std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last first
   } catch (const CLI::ParseError& error) {
     throw InputError(std::string(trimmed(failure_message(&app, error))));
   }

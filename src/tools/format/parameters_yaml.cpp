@@ -129,8 +129,7 @@ std::string parameters_yaml(const study::Identification& found, Frame frame) {
       "format: kelpie-parameters\nversion: 1\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
       "scale: {}\nmisfit: {}\n",
       quoted(found.source), frame == Frame::flu ? "FLU" : "FRD", found.training_rows,
-      quoted(found.split), quoted(scale_text(found)),
-      number("{:.3g}", found.fit.misfit));
+      quoted(found.split), quoted(scale_text(found)), number("{:.3g}", found.fit.misfit));
   if (found.mass_kg) {
     text += fmt::format("mass_kg: {:.6g}\n", *found.mass_kg);
   }

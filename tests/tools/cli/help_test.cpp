@@ -46,8 +46,8 @@ TEST_F(Help, OfAllCommandsHasEveryOptionOfEachUnderItsName) {
 TEST_F(Help, EndsWithTwoExamplesAndFitsTheTerminal) {
   for (const std::string width : {"64", "100"}) {
     for (const std::string& command : commands()) {
-      const std::string text = shell(
-          folder_, "COLUMNS=" + width + " " + KELPIE_COMMAND + " " + command + " --help");
+      const std::string text =
+          shell(folder_, "COLUMNS=" + width + " " + KELPIE_COMMAND + " " + command + " --help");
       const std::size_t examples = text.find("\nExamples:\n");
       ASSERT_NE(examples, std::string::npos) << command;
       EXPECT_EQ(matches(text.substr(examples), "\n  kelpie (" + command + " )").size(), 2U) << text;
