@@ -37,14 +37,29 @@ class CMakeBuild(build_ext):
 
     def build_module(self) -> Path:
         folder = Path(self.build_temp).resolve()
+        jobs = len(os.sched_getaffinity(0))
+        say(f"kelpie: compiling on {jobs} core(s), some {round(4 / jobs) + 1} minutes; "
+            "pip install -v shows each step")
+        ninja = ["-G", "Ninja"] if shutil.which("ninja") else []
         subprocess.run(
-            ["cmake", "-S", str(ROOT), "-B", str(folder), "-DCMAKE_BUILD_TYPE=Release",
-             "-DKELPIE_BUILD_PYTHON=ON", "-DKELPIE_BUILD_TOOLS=OFF", "-DKELPIE_BUILD_TESTS=OFF",
-             "-DBUILD_SHARED_LIBS=OFF", f"-DPython3_EXECUTABLE={sys.executable}"],
+            ["cmake", "-S", str(ROOT), "-B", str(folder), *ninja, "-DCMAKE_BUILD_TYPE=Release",
+             "-DKELPIE_BUILD_PYTHON=ON", "-DKELPIE_BUILD_LIVE=OFF", "-DKELPIE_BUILD_TESTS=OFF",
+             "-DKELPIE_INSTALL=OFF", "-DKELPIE_JOIN_SOURCES=ON", "-DBUILD_SHARED_LIBS=OFF",
+             f"-DPython3_EXECUTABLE={sys.executable}"],
             check=True)
         subprocess.run(["cmake", "--build", str(folder), "--target", "kelpie_python",
-                        "--parallel"], check=True)
+                        "--parallel", str(jobs)], check=True)
         return folder
+
+
+def say(text: str) -> None:
+    """Tells the terminal: pip keeps what a build prints to itself."""
+    print(text, flush=True)
+    try:
+        with open("/dev/tty", "w", encoding="utf-8") as terminal:
+            terminal.write(f"\n{text}\n")
+    except OSError:
+        pass  # there is none
 
 
 setup(version=version(), ext_modules=[Extension("kelpie._kelpie", sources=[])],

@@ -34,8 +34,12 @@ if(HELP2MAN)
             "--include=${CMAKE_CURRENT_LIST_DIR}/kelpie.h2m"
             "--output=${generated_dir}/kelpie.1" "$<TARGET_FILE:kelpie_cli>"
     DEPENDS kelpie_cli "${CMAKE_CURRENT_LIST_DIR}/kelpie.h2m" VERBATIM)
-  list(APPEND documents "${generated_dir}/kelpie.1")
-  install(FILES "${generated_dir}/kelpie.1" COMPONENT runtime
+  find_program(GZIP gzip REQUIRED)
+  add_custom_command(OUTPUT "${generated_dir}/kelpie.1.gz"
+    COMMAND "${GZIP}" -9nkf "${generated_dir}/kelpie.1"
+    DEPENDS "${generated_dir}/kelpie.1" VERBATIM)
+  list(APPEND documents "${generated_dir}/kelpie.1.gz")
+  install(FILES "${generated_dir}/kelpie.1.gz" COMPONENT runtime
           DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 else()
   message(STATUS "kelpie: built without its manual page, which help2man would make")

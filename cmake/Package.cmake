@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # `cpack -G DEB` in the build folder: libkelpie-dev (the library and kelpie-logs), kelpie-tools,
-# kelpie-live (the service of `kelpie live`) and, with KELPIE_WITH_MPI, kelpie-mpi.
+# kelpie-live (the service of `kelpie live`), kelpie-doc; with KELPIE_WITH_MPI kelpie-mpi, and with
+# KELPIE_BUILD_PYTHON python3-kelpie.
 if(BUILD_SHARED_LIBS)
   return()  # these packages are of static libraries
 endif()
@@ -15,20 +16,43 @@ set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_GENERATOR DEB)
 
-# For Debian alone: the copyright beside every package, and a folder for zsh.
-set(packages libkelpie-dev kelpie-tools)
+# For Debian alone: copyright and changelog beside every package, and a folder for zsh.
+set(packages libkelpie-dev kelpie-tools kelpie-doc)
 if(KELPIE_BUILD_LIVE)
   list(APPEND packages kelpie-live)
 endif()
 if(TARGET kelpie_mpi)
   list(APPEND packages kelpie-mpi)
 endif()
-foreach(package IN LISTS packages)
-  install(FILES cmake/debian_copyright DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${package}"
-          RENAME copyright COMPONENT debian_${package} EXCLUDE_FROM_ALL)
-endforeach()
+if(TARGET kelpie_python AND NOT CMAKE_CROSSCOMPILING)
+  list(APPEND packages python3-kelpie)
+endif()
+string(TIMESTAMP today "%a, %d %b %Y %H:%M:%S +0000" UTC)  # $SOURCE_DATE_EPOCH, where that is set
+file(WRITE "${generated_dir}/changelog" "kelpie (${PROJECT_VERSION}) unstable; urgency=medium
 
-set(CPACK_COMPONENTS_ALL development runtime debian_libkelpie-dev debian_kelpie-tools)
+  * CHANGELOG.md in the package kelpie-doc has the changes.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${today}
+")
+find_program(GZIP gzip REQUIRED)
+execute_process(COMMAND "${GZIP}" -9nf "${generated_dir}/changelog" COMMAND_ERROR_IS_FATAL ANY)
+foreach(package IN LISTS packages)
+  set(beside "${CMAKE_INSTALL_DATADIR}/doc/${package}")
+  install(FILES cmake/debian_copyright DESTINATION "${beside}"
+          RENAME copyright COMPONENT debian_${package} EXCLUDE_FROM_ALL)
+  install(FILES "${generated_dir}/changelog.gz" DESTINATION "${beside}"
+          COMPONENT debian_${package} EXCLUDE_FROM_ALL)
+endforeach()
+install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/kelpie-doc"
+        COMPONENT debian_kelpie-doc EXCLUDE_FROM_ALL
+        PATTERN Doxyfile EXCLUDE PATTERN "*.dox" EXCLUDE PATTERN CMakeLists.txt EXCLUDE
+        PATTERN __pycache__ EXCLUDE)
+install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/kelpie-doc"
+        COMPONENT debian_kelpie-doc EXCLUDE_FROM_ALL)
+
+set(CPACK_COMPONENTS_ALL development runtime debian_libkelpie-dev debian_kelpie-tools
+    debian_kelpie-doc)
+set(CPACK_COMPONENT_DEBIAN_KELPIE-DOC_GROUP kelpie_doc)
 set(CPACK_COMPONENT_DEVELOPMENT_GROUP libkelpie_dev)
 set(CPACK_COMPONENT_DEBIAN_LIBKELPIE-DEV_GROUP libkelpie_dev)
 set(CPACK_COMPONENT_RUNTIME_GROUP kelpie_tools)
@@ -43,12 +67,22 @@ if(TARGET kelpie_mpi)
   set(CPACK_COMPONENT_MPI_GROUP kelpie_mpi)
   set(CPACK_COMPONENT_DEBIAN_KELPIE-MPI_GROUP kelpie_mpi)
 endif()
+if("python3-kelpie" IN_LIST packages)
+  set(python_folder lib/python3/dist-packages/kelpie)
+  install(TARGETS kelpie_python LIBRARY DESTINATION "${python_folder}"
+          COMPONENT debian_python3-kelpie EXCLUDE_FROM_ALL)
+  install(DIRECTORY python/kelpie/ DESTINATION "${python_folder}"
+          COMPONENT debian_python3-kelpie EXCLUDE_FROM_ALL PATTERN __pycache__ EXCLUDE)
+  list(APPEND CPACK_COMPONENTS_ALL debian_python3-kelpie)
+  set(CPACK_COMPONENT_DEBIAN_PYTHON3-KELPIE_GROUP python3_kelpie)
+endif()
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(about "It learns accelerations of a vehicle from velocities and commands, one sample at a time,
-in a fixed buffer and a bounded time per sample, and keeps up when the vehicle changes.")
+set(about "It learns accelerations of a vehicle from velocities and commands, one
+sample at a time, in a fixed buffer and a bounded time per sample, and keeps
+up when the vehicle changes.")
 
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_NAME libkelpie-dev)
 set(CPACK_DEBIAN_LIBKELPIE_DEV_PACKAGE_SECTION libdevel)
@@ -62,7 +96,8 @@ if(MATIO_FOUND)
 endif()
 set(CPACK_DEBIAN_LIBKELPIE_DEV_DESCRIPTION "${about}
 
-This package has the static libraries, headers, and the files for CMake and pkg-config.")
+This package has the static libraries, headers, and the files for CMake and
+pkg-config.")
 
 set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_NAME kelpie-tools)
 set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SECTION science)
@@ -89,8 +124,9 @@ if(CMAKE_CROSSCOMPILING AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
 endif()
 set(CPACK_DEBIAN_KELPIE_TOOLS_DESCRIPTION "${about}
 
-This package has the command kelpie, which learns CSV logs and ROS 2 bags, predicts, rolls models
-out, exports them as C, and simulates a vehicle.")
+This package has the command kelpie, which learns CSV logs and ROS 2 bags,
+predicts, rolls models out, exports them as C, and simulates a vehicle.")
+set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SUGGESTS "kelpie-doc, python3-kelpie")
 
 set(CPACK_DEBIAN_KELPIE_LIVE_PACKAGE_NAME kelpie-live)
 set(CPACK_DEBIAN_KELPIE_LIVE_PACKAGE_SECTION science)
@@ -106,6 +142,28 @@ set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_KELPIE_MPI_PACKAGE_DEPENDS "kelpie-tools (= ${PROJECT_VERSION}), openmpi-bin")
 set(CPACK_DEBIAN_KELPIE_MPI_DESCRIPTION "${about}
 
-This package has what kelpie needs to do its studies on many machines, by mpirun or srun.")
+This package has what kelpie needs to do its studies on many machines, by
+mpirun or srun.")
+
+set(CPACK_DEBIAN_KELPIE_DOC_PACKAGE_NAME kelpie-doc)
+set(CPACK_DEBIAN_KELPIE_DOC_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_KELPIE_DOC_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_KELPIE_DOC_DESCRIPTION "${about}
+
+This package has the documentation, and examples in C++, C, Python and as
+configuration files of vehicles.")
+
+set(CPACK_DEBIAN_PYTHON3_KELPIE_PACKAGE_NAME python3-kelpie)
+set(CPACK_DEBIAN_PYTHON3_KELPIE_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON3_KELPIE_PACKAGE_SHLIBDEPS ON)
+math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+string(CONCAT CPACK_DEBIAN_PYTHON3_KELPIE_PACKAGE_DEPENDS
+  "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_minor}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON3_KELPIE_PACKAGE_RECOMMENDS "python3-pandas, python3-sklearn")
+set(CPACK_DEBIAN_PYTHON3_KELPIE_PACKAGE_SUGGESTS "kelpie-doc, python3-matplotlib")
+set(CPACK_DEBIAN_PYTHON3_KELPIE_DESCRIPTION "${about}
+
+This package has the Python package kelpie: estimators with the contract of
+scikit-learn, readers of logs, and the studies of the command kelpie.")
 
 include(CPack)

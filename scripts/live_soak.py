@@ -157,7 +157,7 @@ def live(kelpie):
     (FOLDER / "live.toml").write_text(CONFIG)
     # The blocks in which it reads the recording beforehand go back, rather than hide what grows.
     process = subprocess.Popen(
-        [kelpie, "live", "--config", FOLDER / "live.toml", "--from", FOLDER / "day.db3", "--speed",
+        [kelpie, "live", "--config", FOLDER / "live.toml", "--replay", FOLDER / "day.db3", "--speed",
          "max", "--fresh", "--out", FOLDER], text=True, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, env={"MALLOC_MMAP_THRESHOLD_": "131072"})
     text, sizes = "", []

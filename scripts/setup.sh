@@ -12,7 +12,7 @@ packages=(
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev libyaml-cpp-dev zlib1g-dev libsystemd-dev
   cyclonedds-dev libmicrohttpd-dev libssl-dev libmatio-dev libopenmpi-dev openmpi-bin
   libgtest-dev librapidcheck-dev libfastrtps-dev libfastcdr-dev doxygen help2man
-  pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip
+  pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip python3-build
   python3-pytest python3-sklearn python3-pandas python3-matplotlib python3-distributed
   chromium chromium-driver python3-selenium
 )

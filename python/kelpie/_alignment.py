@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _kelpie
 from ._arrays import Floats
-from ._clock import Clock
+from ._clock import Clock, index_times, require_rate
 from ._contract import BaseEstimator, NotFittedError, TransformerMixin
 from ._parameters import ParameterAccess
 
@@ -37,7 +37,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         "command" (its name) and some of "neutral" (0), "dead_band" (0), "astern" (1), "lag_s" (0),
         "rate" (0: unlimited) and "delay_s" (0), in the unit of the command and seconds, as in
         model.json.
-    rate : rows per second [Hz].
+    rate : rows per second [Hz]. Default: as the times of fit() have them.
     states : names of the columns of X that are velocities, one for each column of y; all others
         are commands. Default: the first columns if they are velocities by their names, else those
         whose slope goes with a column of y.
@@ -46,6 +46,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
     ----------
     shift_s_ : the lag [s]; 0 without clear evidence.
     rows_ : the lag in rows.
+    rate_ : rows per second [Hz].
     commands_ : names of the aligned columns.
     actuators_ : a dict for each of these, with all keys of `actuators`; [] where all act at once.
     gain_ : share of the variance unexplained without alignment.
@@ -54,7 +55,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
     """
 
     def __init__(self, *, shift: Union[str, float] = "auto",
-                 actuators: Sequence[dict[str, Any]] = (), rate: float = 1.0,
+                 actuators: Sequence[dict[str, Any]] = (), rate: Optional[float] = None,
                  states: Optional[Sequence[str]] = None) -> None:
         self.shift = shift
         self.actuators = actuators
@@ -68,22 +69,26 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         ----------
         X : (n, inputs), in the units of the log.
         y : (n,) or (n, targets), accelerations in the units of the log.
-        t : (n,), time [s] or time stamps, never decreasing. Default: `rate` rows per second. Rows
-            more than three steps of 1 / `rate` apart belong to different stretches.
+        t : (n,), time [s] or time stamps, never decreasing. Default: the index of a data frame
+            where it tells the time, else `rate` rows per second. Rows more than three steps of
+            1 / `rate` apart belong to different stretches.
 
-        Raises ValueError on a NaN, an infinity, other shapes or a wrong parameter; where `shift` is
+        Raises ValueError without rate and times, on a NaN, an infinity, other shapes or a wrong parameter; where `shift` is
         a number, also if no column is known to be a velocity.
         """
         rows = _arrays.matrix(X)
         targets = _arrays.targets(y, len(rows), type(self).__name__)
-        times = self._times(t, len(rows))
+        t = index_times(X) if t is None else t
+        self.rate_ = require_rate(self.rate, "X") if t is None or self.rate is not None else (
+            _measured_rate(Clock().times(t, len(rows), 0, None)))
+        times = self._times(X, t, len(rows))
         columns = _arrays.column_names(X)
         names = columns or [f"x{i}" for i in range(rows.shape[1])]
         states = "auto" if self.states is None else ",".join(self.states)
-        problem = (rows, targets, times, float(self.rate), names, states)
+        problem = (rows, targets, times, self.rate_, names, states)
         found, self.commands_, self.actuators_, self.gain_, self.why_ = self._found(problem)
-        self.rows_ = int(np.rint(found * self.rate))
-        self.shift_s_ = self.rows_ / self.rate
+        self.rows_ = int(np.rint(found * self.rate_))
+        self.shift_s_ = self.rows_ / self.rate_
         self._places = [names.index(name) for name in self.commands_]
         self._aligned(rows[:0], times[:0])  # has the checks of given actuators
         self.n_features_in_ = rows.shape[1]
@@ -102,17 +107,33 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
                                  "'fit' with appropriate arguments before using this estimator.")
         rows = _arrays.matrix(X)
         _arrays.require_same_columns(self, X, rows)
-        return self._aligned(rows, self._times(t, len(rows)))
+        return self._aligned(rows, self._times(X, t, len(rows)))
 
     def fit_transform(self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Floats:
         """fit(), then transform() of the same rows."""
         return self.fit(X, y, t).transform(X, t)
 
+    def get_feature_names_out(self, input_features: Optional[Sequence[str]] = None) -> NDArray[Any]:
+        """Names of the columns, which are those of X; for set_output() and pipelines.
+
+        Raises ValueError where `input_features` aren't the columns of fit().
+        """
+        if "rows_" not in vars(self):
+            raise NotFittedError(f"This {type(self).__name__} instance is not fitted yet.")
+        known = getattr(self, "feature_names_in_", None)
+        if known is None:
+            known = [f"x{i}" for i in range(self.n_features_in_)]
+            if input_features is not None and len(input_features) == len(known):
+                known = list(input_features)
+        if input_features is not None and list(input_features) != list(known):
+            raise ValueError("input_features is not equal to feature_names_in_")
+        return np.asarray(known, dtype=object)
+
     def _more_tags(self) -> dict[str, Any]:
         return {"requires_y": True, "multioutput": True}
 
     def _aligned(self, rows: Floats, times: Floats) -> Floats:
-        return _kelpie.align(rows, times, float(self.rate), self.rows_, self._places,
+        return _kelpie.align(rows, times, self.rate_, self.rows_, self._places,
                              self.actuators_)
 
     def _found(self, problem: tuple[Any, ...]
@@ -143,5 +164,12 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         return [{**_AT_ONCE, **given.get(name, {}), "command": name}
                 for name in commands] if given else []
 
-    def _times(self, t: Optional[ArrayLike], rows: int) -> Floats:
-        return Clock().times(t, rows, 0, float(self.rate))
+    def _times(self, X: Any, t: Optional[ArrayLike], rows: int) -> Floats:
+        return Clock().times(index_times(X) if t is None else t, rows, 0, self.rate_)
+
+
+def _measured_rate(times: Floats) -> float:
+    steps = np.diff(times)
+    if not (steps > 0.0).any():
+        raise ValueError("t: the times don't advance")
+    return float(1.0 / np.median(steps[steps > 0.0]))

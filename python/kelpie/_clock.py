@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import datetime
+import numbers
 from typing import Any, Optional
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import Floats, floats, require_rows
 
+TIMES = ("t", "time", "stamp")  # usual names, as kelpie learn takes them
 _SECOND = np.timedelta64(1, "s")
 
 
@@ -35,6 +37,33 @@ def _utc(stamp: Any) -> Any:
     return stamp.to_datetime64() if hasattr(stamp, "to_datetime64") else np.datetime64(stamp)
 
 
+def index_times(X: Any) -> Any:
+    """The index of a data frame if the index tells the time, else None.
+
+    Time stamps and durations do, and numbers [s] under a usual name of times.
+    """
+    index = getattr(X, "index", None)
+    kind = getattr(getattr(index, "dtype", None), "kind", "O")
+    return index if kind in "mM" or kind in "iuf" and index.name in TIMES else None
+
+
+def checked_rate(rate: Any) -> float:
+    """`rate` [rows per second]. ValueError unless it is a number > 0."""
+    if isinstance(rate, bool) or not isinstance(rate, numbers.Real):
+        raise ValueError(f"rate: {rate!r} is no number; rows per second are wanted, as in rate=4.0")
+    if not (np.isfinite(rate) and rate > 0.0):
+        raise ValueError(f"rate: {rate} is out of range; it has to be > 0 rows per second")
+    return float(rate)
+
+
+def require_rate(rate: Any, what: str) -> float:
+    """checked_rate(), or ValueError where there is none and `what` has no times."""
+    if rate is None:
+        raise ValueError(f"rate: isn't known, and {what} tells no time; give rows per second, as "
+                         "in rate=4.0, or times, as t=")
+    return checked_rate(rate)
+
+
 class Clock:
     """Times [s] of a stream that comes in blocks.
 
@@ -49,17 +78,18 @@ class Clock:
         self._first = 0
         self._last = -np.inf
 
-    def times(self, t: Optional[ArrayLike], rows: int, samples: int, rate: float) -> Floats:
+    def times(self, t: Optional[ArrayLike], rows: int, samples: int,
+              rate: Optional[float]) -> Floats:
         """The times of the next `rows` samples, after `samples` earlier ones.
+
+        With neither times nor a rate, samples count as 1 s each.
 
         Raises ValueError on times that aren't finite, not of shape (rows,), or decreasing, and on
         seconds after time stamps or the other way round.
         """
         if t is None:
-            if not (np.isfinite(rate) and rate > 0.0):
-                raise ValueError(f"rate: {rate} is out of range; it has to be > 0 rows per second")
-            return self._origin + np.arange(samples - self._first,
-                                            samples - self._first + rows) / rate
+            return self._origin + np.arange(samples - self._first, samples - self._first + rows) / (
+                1.0 if rate is None else checked_rate(rate))
         times = floats(self.seconds(t), "t")
         if times.ndim != 1:
             raise ValueError(f"t should be a 1d array, got an array of shape {times.shape} instead")

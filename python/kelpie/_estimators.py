@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _settings
 from ._arrays import Floats
-from ._clock import Clock
+from ._clock import Clock, index_times, require_rate
 from ._learner import Learner
 
 
@@ -43,7 +43,8 @@ inputs : names of the columns of X. Default: names of a data frame, else x0, x1,
     Velocities are recognised by usual names: u, v, r; surge, yaw_rate; Vx; twist.linear.x; by the
     names of a data frame's targets (udot, u_dot, du of u); or given by `velocities`.
 targets : names of the columns of y. Default: names of a data frame, else y0, y1, ...
-rate : rows per second [Hz] where no times are given; forgetting depends on age.
+rate : rows per second [Hz] where no times are given; forgetting depends on age. Default: none, so
+    that a log without times is refused (fit() says more).
 
 Further parameters are the settings of `kelpie config`. None takes the value of the preset. With
 several targets, a setting may be a list with a value for each target.
@@ -52,8 +53,8 @@ several targets, a setting may be a list with a value for each target.
 
 Attributes
 ----------
-decisions_ : structured array of y's shape: the outcome of every row of the last fit() or
-    partial_fit(). `predicted`, `lower`, `upper` are from before the row was learned: one step
+decisions_ : structured array of y's shape, or a data frame after a data frame: the outcome of
+    every row of the last fit() or partial_fit(). `predicted`, `lower`, `upper` are from before the row was learned: one step
     ahead. `disturbance` is the estimate from the model's last errors, `corrected_lower` and
     `corrected_upper` the interval around the sum. Further `verdict` (Verdict), `had_model`,
     `similarity`, `outliers`, `forgotten`, `released`, `iterations`, `kkt_gap`, `served`,
@@ -90,7 +91,8 @@ class DynamicsModel(Learner):
         Parameters
         ----------
         X : (n, inputs). Velocities and commands of the first row, commands of later rows.
-        t : (n,), time [s] or time stamps, increasing. Default: `rate` rows per second.
+        t : (n,), time [s] or time stamps, increasing. Default: the index of a data frame where it
+            tells the time, else `rate` rows per second.
         between : "linear" or "held", how commands change between rows.
         measured : numbers of velocities that are measured and taken from X, from 0.
         step_s : longest step of the integrator [s].
@@ -101,7 +103,8 @@ class DynamicsModel(Learner):
         if between not in ("linear", "held"):
             raise ValueError(f"between: {between!r} is not known; 'linear' and 'held' are")
         rows = self._inputs(X)
-        times = (np.arange(len(rows)) / self.rate if t is None
+        t = index_times(X) if t is None else t
+        times = (np.arange(len(rows)) / require_rate(self.rate, "X") if t is None
                  else np.atleast_1d(_arrays.floats(Clock().seconds(t), "t")))
         return RolloutResult(*self._trained().rollout(rows, times, between == "held",
                                                       list(measured), step_s))

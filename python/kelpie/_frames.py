@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 
 from . import _kelpie
-from ._clock import stamps_of
+from ._clock import TIMES, index_times, stamps_of
 
 _NUMBERS = "biuf"  # kinds of dtypes
 
@@ -38,12 +38,14 @@ def taken(X: Any, y: Any, t: Any, inputs: Any, targets: Any) -> Given:
         return Given(X, y, t, False)
     if y is None:
         return _whole_log(X, t, inputs, targets)
-    stamps, rest = t, X
+    stamps, rest = index_times(X) if t is None else t, X
     if isinstance(t, str):
         _require(X, [t], "t")
         stamps = X[t]
         if inputs is None:
             rest = X.drop(columns=[t])
+    if inputs is not None and len(inputs) != rest.shape[1]:
+        _require(rest, inputs, "inputs")
     chosen = inputs_of(rest, inputs)
     return Given(rest if chosen is None else chosen, y, stamps, chosen is not None)
 
@@ -53,6 +55,22 @@ def inputs_of(X: Any, inputs: Optional[Sequence[str]]) -> Any:
     if inputs is None or not is_frame(X) or not set(inputs) <= set(X.columns):
         return None
     return X[list(inputs)]
+
+
+def index_of(X: Any) -> Any:
+    """The index of a data frame of pandas, else None."""
+    return X.index if is_frame(X) and type(X).__module__.startswith("pandas") else None
+
+
+def like(values: Any, index: Any, targets: Sequence[str]) -> Any:
+    """A structured array (n,) or (n, targets) as a data frame with `index`, where there is one."""
+    if index is None:
+        return values
+    import pandas
+    if values.ndim == 1:
+        return pandas.DataFrame({name: values[name] for name in values.dtype.names}, index=index)
+    return pandas.DataFrame({(name, target): values[name][:, k] for name in values.dtype.names
+                             for k, target in enumerate(targets)}, index=index)
 
 
 def states(inputs: Sequence[str], targets: Any) -> dict[str, str]:
@@ -88,16 +106,15 @@ def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
     if t is None and time:
         t = X[time]
         ins = [name for name in ins if name != time or inputs]
-    elif t is None and getattr(getattr(X.index, "dtype", None), "kind", "") == "M":
-        t = X.index
+    elif t is None:
+        t = index_times(X)
     whole = np.isfinite(X[ins + outs].to_numpy(dtype=float)).all(axis=1)
     y = X[outs[0]] if len(outs) == 1 else X[outs]
     return Given(X[ins][whole], y[whole], None if t is None else _rows(t, whole), True)
 
 
 def _stamp_names(X: Any) -> list[str]:
-    times = ("t", "time", "stamp")
-    return [name for name, kind in zip(X.columns, X.dtypes) if _kind(kind) == "M" and name in times]
+    return [name for name, kind in zip(X.columns, X.dtypes) if _kind(kind) == "M" and name in TIMES]
 
 
 def _kind(dtype: Any) -> str:

@@ -13,13 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _frames, _kelpie, _settings
 from ._arrays import Floats
-from ._clock import Clock
+from ._clock import Clock, require_rate
 from ._contract import NotFittedError
+from ._log import existing
 from ._parameters import Parameters, Word
 
 Self = TypeVar("Self", bound="Learner")
 
-_STATE_FORMAT = 3  # of pickles
+_STATE_FORMAT = 4  # of pickles
 
 
 class PlausibilityWarning(UserWarning):
@@ -46,7 +47,9 @@ class Learner(Parameters):
             X is a data frame of a whole log: missing inputs, targets and time are guessed from the
             column names as in `kelpie learn`, and rows with a missing number are skipped.
         t : (n,), time [s] or time stamps, never decreasing; or the name of a column of X. Default:
-            `rate` rows per second, from 0 on.
+            the index of a data frame where it tells the time, else `rate` rows per second, from 0
+            on. Where neither is known, a whole log is refused, a data frame X is learned with a
+            warning, and an array without one, at 1 row per second.
 
         Where the names of inputs and targets tell which target is the derivative of which input
         (udot of u), PlausibilityWarning names units, signs, rates and clocks that cannot be right.
@@ -62,7 +65,7 @@ class Learner(Parameters):
         rows, targets = self._checked(given.X, given.y)
         model = self._start(given, rows, targets, most_warmup=max(2, rows.shape[0]))
         self._warn_of_mistakes(model, given, rows, targets)
-        self._learn(model, rows, targets, given.t)
+        self._learn(model, rows, targets, given)
         model.learn_held_back()
         return self
 
@@ -79,7 +82,7 @@ class Learner(Parameters):
             given = self._given(X, y, t, unknown, (self.inputs, self.targets))
             rows, targets = self._checked(given.X, given.y)
             model = self._start(given, rows, targets, most_warmup=None)
-            return self._learn(model, rows, targets, given.t)
+            return self._learn(model, rows, targets, given)
         names = (self._model.inputs, self._model.targets) if self._by_name else (None, None)
         given = self._given(X, y, t, unknown, names)
         seen = self._as_seen(given.X) if given.by_name else given.X
@@ -88,7 +91,7 @@ class Learner(Parameters):
         if isinstance(self._model, _kelpie.TrainedModel):
             start = self._clock.times(given.t, len(rows), 0, self.rate)[0]
             self._model = _kelpie.LiveModel.resume_from(self._model, start)
-        return self._learn(self._model, rows, targets, given.t)
+        return self._learn(self._model, rows, targets, given)
 
     @overload
     def predict(self, X: ArrayLike) -> Floats: ...
@@ -112,7 +115,7 @@ class Learner(Parameters):
             return self._shaped(self._fitted().predict(self._inputs(X)))
         if return_std and return_interval:
             raise ValueError("return_std, return_interval: give one of them")
-        told = self.assess(X)
+        told = self._assessed(X, 0.0)
         value, lower, upper = (np.ascontiguousarray(told[name])
                                for name in ("value", "lower", "upper"))
         if return_interval:
@@ -120,7 +123,7 @@ class Learner(Parameters):
         coverage = float(self._fitted().settings["coverage"])
         return value, (upper - lower) / (2.0 * NormalDist().inv_cdf(0.5 + 0.5 * coverage))
 
-    def assess(self, X: ArrayLike, ahead_s: ArrayLike = 0.0) -> NDArray[np.void]:
+    def assess(self, X: ArrayLike, ahead_s: ArrayLike = 0.0) -> Any:
         """predict() with interval, novelty and disturbance.
 
         Parameters
@@ -129,7 +132,9 @@ class Learner(Parameters):
         ahead_s : time from the last learned row to the rows of X [s], one number or (n,).
             Default: each row is the next row.
 
-        Returns a structured array of y's shape: `value`; `lower` and `upper`, which hold the next
+        Returns a structured array of y's shape, or a data frame for a data frame X (with several
+        targets, of columns ("value", "udot"), so that assess(X)["value"] has a column per target):
+        `value`; `lower` and `upper`, which hold the next
         sample with the share `coverage` (infinite until enough errors are known); `novelty`, the
         share of the buffer's samples in a denser place, 0 to 1; `disturbance`, to be added to
         `value`, estimated from recent errors and fading with `ahead_s`; `corrected_lower` and
@@ -137,6 +142,9 @@ class Learner(Parameters):
         A model from model.json has the intervals and novelty of the saved model, a disturbance of
         0, and an infinite interval around the sum.
         """
+        return _frames.like(self._assessed(X, ahead_s), _frames.index_of(X), self.targets_)
+
+    def _assessed(self, X: ArrayLike, ahead_s: ArrayLike) -> NDArray[np.void]:
         model = self._fitted()
         rows = self._inputs(X)
         if isinstance(model, _kelpie.TrainedModel):
@@ -181,9 +189,10 @@ class Learner(Parameters):
     def load(cls: type[Self], file: Union[str, os.PathLike[str]]) -> Self:
         """Reads a model.json; predictions equal those of the saved model.
 
-        Raises ValueError naming file and key if the file is not a valid model.json.
+        Raises ValueError naming file and key if the file is not a valid model.json,
+        FileNotFoundError if there is none.
         """
-        model = _kelpie.TrainedModel.read(os.fspath(file))
+        model = _kelpie.TrainedModel.read(existing(file))
         if cls._takes_one_target() and len(model.targets) != 1:
             raise ValueError(f"{file}: is a model of {len(model.targets)} targets; "
                              f"{cls.__name__} has one, DynamicsModel several")
@@ -192,6 +201,18 @@ class Learner(Parameters):
         loaded._adopt(model, flat=loaded._takes_one_target())
         loaded._by_name = True
         return loaded
+
+    @property
+    def decisions_(self) -> Any:
+        """The outcome of every row of the last fit() or partial_fit(), for each target.
+
+        A structured array of y's shape; after a data frame X a data frame of its index (with
+        several targets, of columns ("predicted", "udot")).
+        """
+        self._fitted()
+        if "_decisions" not in vars(self):
+            raise AttributeError("a model read from model.json has no decisions")
+        return _frames.like(self._decisions, self._index, self.targets_)
 
     @property
     def terms_(self) -> list[str]:
@@ -301,7 +322,13 @@ class Learner(Parameters):
         if weights is not None:
             raise ValueError("sample_weight: rows of a stream have no weights; their age and place "
                              "decide what counts. Leave rows out instead (score() takes weights)")
-        return _frames.taken(X, y, t, *names)
+        given = _frames.taken(X, y, t, *names)
+        if given.t is None and self.rate is None and _frames.is_frame(X):
+            if y is None:
+                require_rate(None, "this log")
+            warnings.warn("rate: isn't known, and X tells no time: rows count as 1 s each. Give "
+                          "rate= (rows per second) or t=", UserWarning, stacklevel=3)
+        return given
 
     def _as_seen(self, X: Any) -> Any:
         # Rows without names have none to compare.
@@ -344,14 +371,15 @@ class Learner(Parameters):
                           PlausibilityWarning, stacklevel=3)
 
     def _learn(self: Self, model: _kelpie.LiveModel, rows: Floats, targets: Floats,
-               t: Optional[ArrayLike]) -> Self:
+               given: _frames.Given) -> Self:
         before = model.samples
-        times = self._clock.times(t, len(rows), before, self.rate)
+        times = self._clock.times(given.t, len(rows), before, self.rate)
         try:
             decisions = model.update(rows, targets, times)
         finally:
-            self._clock.learned(times[:model.samples - before], t, model.samples)
-        self.decisions_ = self._shaped(decisions)
+            self._clock.learned(times[:model.samples - before], given.t, model.samples)
+        self._decisions = self._shaped(decisions)
+        self._index = _frames.index_of(given.X)
         return self
 
     def _inputs(self, X: ArrayLike) -> Floats:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Sequence
 from typing import Any, Optional, Union
@@ -18,6 +19,13 @@ except ImportError:
     pandas = None  # type: ignore[assignment]
 
 _Path = Union[str, os.PathLike[str]]
+
+
+def existing(file: _Path) -> str:
+    """The path as text. FileNotFoundError where there is no such file."""
+    if not os.path.exists(file):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(file))
+    return os.fspath(file)
 
 
 class LogArrays(dict[str, NDArray[Any]]):
@@ -57,7 +65,8 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     it can't), `losses`, `draft` (the configuration that was guessed, or None).
     DynamicsModel.fit() takes such a data frame as a whole.
 
-    Raises ValueError naming file, place and what would be right.
+    Raises ValueError naming file, place and what would be right; FileNotFoundError where there is no
+    such file.
     """
     if clock not in ("receive", "header"):
         raise ValueError(f"clock: {clock!r} is not known; 'receive' and 'header' are")
@@ -70,7 +79,7 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
                          "names its own")
     if frame and pandas is None:
         raise ImportError("frame: pandas isn't installed; without it there are arrays (frame=False)")
-    found = _kelpie.read_log(os.fspath(path), "" if config is None else os.fspath(config),
+    found = _kelpie.read_log(existing(path), "" if config is None else existing(config),
                              list(columns or []), clock == "header",
                              "" if messages is None else os.fspath(messages), recover, strict)
     log = LogArrays(found["columns"])

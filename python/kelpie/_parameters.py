@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import inspect
 from collections.abc import Sequence
 from typing import Any, Optional, TypeVar, Union
@@ -13,6 +14,26 @@ from ._contract import BaseEstimator, RegressorMixin
 Number = Union[float, Sequence[float], None]
 Word = Union[str, Sequence[str], None]
 Self = TypeVar("Self", bound="ParameterAccess")
+
+
+def _with_known_names(constructor: Any) -> Any:
+    """The constructor, which tells the nearest parameter where there is none of a name."""
+    known = [name for name in inspect.signature(constructor).parameters if name != "self"]
+
+    @functools.wraps(constructor)
+    def checked(self: Any, *none: Any, **given: Any) -> None:
+        for name in given:
+            if name not in known:
+                raise TypeError(_unknown(name, type(self).__name__, known))
+        constructor(self, *none, **given)
+
+    return checked
+
+
+def _unknown(name: str, owner: str, known: list[str]) -> str:
+    near = difflib.get_close_matches(name, known, 1)
+    hint = f" (did you mean '{near[0]}'?)" if near else ""
+    return f"Invalid parameter {name!r} for {owner}{hint}; the parameters are {', '.join(known)}"
 
 
 class ParameterAccess:
@@ -31,10 +52,7 @@ class ParameterAccess:
         known = self._parameter_names()
         for name in params:
             if name not in known:
-                near = difflib.get_close_matches(name, known, 1)
-                hint = f" (did you mean '{near[0]}'?)" if near else ""
-                raise ValueError(f"Invalid parameter {name!r} for {type(self).__name__}{hint}; "
-                                 f"the parameters are {', '.join(known)}")
+                raise ValueError(_unknown(name, type(self).__name__, known))
         for name, value in params.items():
             setattr(self, name, value)
         return self
@@ -47,12 +65,13 @@ class Parameters(ParameterAccess, RegressorMixin, BaseEstimator):
     test compares them with the library's.
     """
 
+    @_with_known_names
     def __init__(
         self,
         *,
         inputs: Optional[Sequence[str]] = None,
         targets: Word = None,
-        rate: float = 1.0,
+        rate: Optional[float] = None,
         # Essential
         preset: str = "default",
         learner: Optional[str] = None,

@@ -41,6 +41,14 @@ def texts(parameters: Mapping[str, Any]) -> dict[str, str]:
     return {name: _text(name, value) for name, value in given.items() if value is not None}
 
 
+def assignments(parameters: Mapping[str, Any]) -> list[str]:
+    """The parameters in the form name=value of `kelpie learn --set`. ValueError on no such value."""
+    settings = {parameter_name(name): name for name in setting_names()}
+    settings.update({alias: name for name, alias in ALIASES.items()})
+    return [f"{settings.get(name, name)}={_text(settings.get(name, name), value)}"
+            for name, value in parameters.items() if value is not None]
+
+
 def parameters(settings: Mapping[str, str], axes: int) -> dict[str, Any]:
     """The parameters that give these settings: the preset and all differences from it."""
     start = _kelpie.preset_values(settings["preset"], axes)

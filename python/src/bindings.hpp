@@ -26,6 +26,7 @@ void bind_live_model(pybind11::module_& module);
 void bind_trained_model(pybind11::module_& module);
 void bind_dead_reckoning(pybind11::module_& module);
 void bind_alignment(pybind11::module_& module);
+void bind_studies(pybind11::module_& module);
 
 /// A dict per command, with `command` and the numbers of Actuator::fields(); or none.
 pybind11::list actuators_of(const Alignment& alignment);

@@ -30,4 +30,5 @@ PYBIND11_MODULE(_kelpie, module) {
   kelpie::python::bind_dead_reckoning(module);
   kelpie::python::bind_alignment(module);
   kelpie::python::bind_log(module);
+  kelpie::python::bind_studies(module);
 }

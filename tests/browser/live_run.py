@@ -59,7 +59,7 @@ class LiveRun:
         config.write_text(CONFIG.format(port=self.port, evil=EVIL, more=more))
         self.said = (folder / "said.txt").open("w")
         self.process = subprocess.Popen(
-            [BUILD_DIR / "kelpie", "live", "--config", config, "--from", recording, "--speed",
+            [BUILD_DIR / "kelpie", "live", "--config", config, "--replay", recording, "--speed",
              speed, "--out", folder / "out"], stdout=self.said, stderr=self.said)
 
     def wait(self) -> None:

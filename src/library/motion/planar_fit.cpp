@@ -204,16 +204,20 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
   return fit;
 }
 
-}  // namespace
-
-PlanarFit fit_planar(const PlanarRows& rows) {
-  const WeakRows weak = weak_rows(rows, {});
+void require_windows(const WeakRows& weak) {
   const auto least = static_cast<Eigen::Index>(kIdentification.windows_per_term *
                                                static_cast<double>(weak.terms.cols()));
   if (weak.terms.rows() < least) {
     throw InputError("too few rows: " + std::to_string(weak.terms.rows()) +
                      " windows of 5 s without a gap, " + std::to_string(least) + " are needed");
   }
+}
+
+}  // namespace
+
+PlanarFit fit_planar(const PlanarRows& rows) {
+  const WeakRows weak = weak_rows(rows, {});
+  require_windows(weak);
   const FreeFit free_fit = fit_freely(weak);
   return collected(rows, weak, free_fit, fit_structure(free_fit, rows.thrusters.size()));
 }
@@ -221,6 +225,7 @@ PlanarFit fit_planar(const PlanarRows& rows) {
 std::array<AccelerationCheck, kPlanarAxes> check_accelerations(
     const PlanarRows& rows, std::span<const double> accelerations) {
   const WeakRows weak = weak_rows(rows, accelerations);
+  require_windows(weak);
   std::array<AccelerationCheck, kPlanarAxes> checks{};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const Eigen::ArrayXd own =

@@ -33,7 +33,7 @@ namespace {
 struct LiveArguments {
   std::string config;
   std::vector<std::string> set;
-  log::LogSource from;
+  log::LogSource replay;
   std::string speed = "1";
   std::string out;
   std::string record;
@@ -47,10 +47,20 @@ struct LiveArguments {
 
 // The file's, with the options over it.
 live::Configuration configuration_of(const LiveArguments& options) {
-  live::Configuration configuration = live::read_configuration(options.config, options.set);
+  if (options.config.empty() && options.replay.path.empty()) {
+    throw InputError(
+        "--config",
+        "is missing: what the messages of a connection mean, for which `kelpie inspect "
+        "LOG --template` writes a draft; a recording needs none: --replay LOG");
+  }
+  std::string summary;
+  live::Configuration configuration =
+      options.config.empty() ? live::draft_configuration(options.replay, options.set, summary)
+                             : live::read_configuration(options.config, options.set);
+  say("{}", summary);
   live::LiveSettings& settings = configuration.live;
-  if (!options.from.definitions.empty()) {
-    configuration.log.messages = options.from.definitions;
+  if (!options.replay.definitions.empty()) {
+    configuration.log.messages = options.replay.definitions;
   }
   settings.out = options.out.empty() ? settings.out : options.out;
   settings.record = options.record.empty() ? settings.record : options.record;
@@ -226,10 +236,10 @@ void live_command(const LiveArguments& options) {
   const file::OutFolder folder =
       take_out_folder(configuration.live.out,
                       {"model.json", format::kCheckpointName, format::kPreviousCheckpointName},
-                      {options.from.path, options.config});
+                      {options.replay.path, options.config});
   std::optional<live::SavedRun> saved = saved_run(options, configuration);
   const std::unique_ptr<live::Transport> transport =
-      transport_of(options.from, options.speed, configuration, saved);
+      transport_of(options.replay, options.speed, configuration, saved);
   if (options.check) {
     live::Outputs nobody;
     outputs_of(configuration);
@@ -254,12 +264,25 @@ void add_live(CLI::App& app) {
       app, "live", "Learn from messages as they come, and keep the model across restarts",
       live_command);
   add_file(command, "--config", options->config,
-           "TOML file with [log], [live] and settings (docs/live.md)")
-      ->required();
+           "TOML file with [log], [live] and settings (docs/live.md); without it a recording is "
+           "read as `kelpie learn` reads one");
   add_set(command, options->set);
-  add_file(command, "--from", options->from.path,
-           "recording to replay, in place of a connection: " + bag::recording_formats());
-  add_folder(command, "--msg-dir", options->from.definitions,
+  CLI::Option* const replay =
+      add_file(command, "--replay", options->replay.path,
+               "recording to replay, in place of a connection: " + bag::recording_formats());
+  command
+      ->add_option_function<std::string>(
+          "--from",
+          [options = options](const std::string& file) {
+            warn(
+                "kelpie: --from of `kelpie live` is called --replay; a later version takes --from "
+                "for a model to go on from, as `kelpie learn` does\n");
+            options->replay.path = file;
+          },
+          "--replay, as it was called")
+      ->group("")
+      ->excludes(replay);
+  add_folder(command, "--msg-dir", options->replay.definitions,
              "folder of .msg files, for types that the recording doesn't define");
   command
       ->add_option("--speed", options->speed,
@@ -284,6 +307,8 @@ void add_live(CLI::App& app) {
                       "host:port (docs/live.md), over live.page");
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
+  add_examples(command, "live --config examples/bluerov.toml --page 8080",
+               "live --replay dive.bag --speed 10 --page 8080");
 }
 
 }  // namespace kelpie::cli

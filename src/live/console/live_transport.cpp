@@ -39,7 +39,7 @@ std::unique_ptr<live::Transport> topics(const live::Configuration& configuration
   if (configuration.live.dds) {
     configuration.live.dds->refuse(why);
   }
-  throw InputError("--from", "is missing: a recording to be replayed; " + why);
+  throw InputError("--replay", "is missing: a recording to be replayed; " + why);
 }
 
 #endif

@@ -71,6 +71,7 @@ void add_play(CLI::App& app) {
       ->add_option("--speed", options->speed,
                    "times as quick as recorded, or max: without a pause, which loses messages")
       ->capture_default_str();
+  add_examples(command, "play dive.bag", "play dive.bag --config vehicle.toml --speed 2");
 }
 
 }  // namespace kelpie::cli

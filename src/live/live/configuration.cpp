@@ -16,6 +16,7 @@
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/stream/sample_stream.hpp"
 #include "live/tuning.hpp"
+#include "log/draft.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -162,6 +163,19 @@ std::string names_of(const std::array<std::string, 3>& columns) {
   return fmt::format("{},{},{}", columns[0], columns[1], columns[2]);
 }
 
+Configuration configuration_of(const file::TomlNode& root, const std::string& file,
+                               const std::vector<std::string>& set) {
+  Configuration configuration{
+      .file = file, .log = log::read_log_config(root), .plan = {}, .settings = {}, .live = {}};
+  configuration.plan = plan_of(configuration.log);
+  configuration.settings = format::make_settings(format::read_settings_file(root), set,
+                                                 configuration.plan.targets.size());
+  if (root.has("live")) {
+    configuration.live = read_live(root["live"]);
+  }
+  return configuration;
+}
+
 }  // namespace
 
 Endpoint parse_endpoint(const std::string& text, const std::string& field) {
@@ -235,19 +249,18 @@ std::vector<std::string> Configuration::columns() const {
 
 Configuration read_configuration(const std::filesystem::path& file,
                                  const std::vector<std::string>& set) {
-  const file::TomlNode root = file::TomlNode::read(file);
-  Configuration configuration{.file = file.string(),
-                              .log = log::read_log_config(root),
-                              .plan = {},
-                              .settings = {},
-                              .live = {}};
-  configuration.plan = plan_of(configuration.log);
-  configuration.settings = format::make_settings(format::read_settings_file(root), set,
-                                                 configuration.plan.targets.size());
-  if (root.has("live")) {
-    configuration.live = read_live(root["live"]);
+  return configuration_of(file::TomlNode::read(file), file.string(), set);
+}
+
+Configuration draft_configuration(const log::LogSource& source, const std::vector<std::string>& set,
+                                  std::string& summary) {
+  const log::Draft draft = log::draft_of(source);
+  if (!draft.is_complete()) {
+    throw InputError({.file = source.path, .line = 0, .field = {}}, draft.unclear(source.path));
   }
-  return configuration;
+  summary = draft.summary(source.path);
+  const std::string name = "the draft for " + source.path;
+  return configuration_of(file::TomlNode::parse(draft.toml, name), name, set);
 }
 
 }  // namespace kelpie::live

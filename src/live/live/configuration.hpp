@@ -68,4 +68,10 @@ struct Configuration {
 Configuration read_configuration(const std::filesystem::path& file,
                                  const std::vector<std::string>& set);
 
+/// The configuration that is drafted for a recording (log::draft_of), and what was taken, in
+/// `summary`. Throws as read_configuration() does, and InputError (file) on a draft that leaves
+/// points open.
+Configuration draft_configuration(const log::LogSource& source, const std::vector<std::string>& set,
+                                  std::string& summary);
+
 }  // namespace kelpie::live

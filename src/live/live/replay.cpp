@@ -25,7 +25,7 @@ double parse_speed(const std::string& text) {
 Replay::Replay(const log::LogSource& source, const Configuration& configuration, double speed)
     : pace_(speed) {
   if (!bag::is_bag(source.path)) {
-    throw InputError({.file = source.path, .line = 0, .field = "--from"},
+    throw InputError({.file = source.path, .line = 0, .field = "--replay"},
                      "is no recording of messages; it takes " + bag::recording_formats());
   }
   reach_ = log::read_reach(source, configuration.log);

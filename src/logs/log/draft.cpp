@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "core/text.hpp"
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
@@ -42,6 +43,11 @@ Draft written(const DraftPlan& plan, const std::string& log, const std::string& 
 
 LogConfig Draft::config(const std::string& source) const {
   return read_log_config(file::TomlNode::parse(toml, "the draft for " + source));
+}
+
+std::string Draft::unclear(const std::string& source) const {
+  return "the signals to use are unclear: " + join_text(open, "; ") + " (`kelpie inspect " +
+         source + " --template vehicle.toml` writes what was found; give it by --config)";
 }
 
 std::string Draft::summary(const std::string& source) const {

@@ -22,6 +22,8 @@ struct Draft {
   std::vector<std::string> open{};
 
   bool is_complete() const { return open.empty(); }
+  /// What an incomplete draft leaves open, and the remedy, as a sentence for the user.
+  std::string unclear(const std::string& source) const;
   /// The configuration; messages call the draft's log `source`. Requires is_complete().
   LogConfig config(const std::string& source) const;
   /// The chosen signals and the limits of the data of the log called `source`, for the user.

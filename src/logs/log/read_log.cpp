@@ -187,11 +187,6 @@ bool gives(const Draft& draft, const std::vector<std::string>& inputs) {
   });
 }
 
-std::string not_complete(const Draft& draft, const LogSource& source) {
-  return "the signals to use are unclear: " + join_text(draft.open, "; ") + " (`kelpie inspect " +
-         source.path + " --template vehicle.toml` writes what was found; give it by --config)";
-}
-
 // What the caller wants, over what was guessed.
 Roles over(const Roles& wanted, const Roles& drafted) {
   Roles roles = wanted;
@@ -279,7 +274,7 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
     return taken_log(std::move(table), roles);  // who uses it says what is missing
   }
   if (!draft.is_complete()) {
-    refuse(source.path, {}, (why_not.empty() ? "" : why_not + "; ") + not_complete(draft, source));
+    refuse(source.path, {}, (why_not.empty() ? "" : why_not + "; ") + draft.unclear(source.path));
   }
   const LogConfig drafted = draft.config(source.path);
   Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(roles, drafted.roles));

@@ -13,7 +13,6 @@ namespace {
 
 using Line = std::vector<std::string>;
 
-constexpr std::size_t kColumns = 100;
 constexpr std::size_t kLongestCell = 36;
 constexpr std::size_t kShortestWords = 8;
 
@@ -71,12 +70,12 @@ std::string tables_text(const std::vector<TextTable>& tables) {
   return text;
 }
 
-std::string wrapped(std::string_view text) {
+std::string wrapped(std::string_view text, std::size_t columns) {
   std::string lines;
   std::size_t column = 0;
   for (const std::string& word : split_text(text, ' ')) {
     const std::size_t width = code_points(word);
-    const bool fits = column > 0 && column + 1 + width <= kColumns;
+    const bool fits = column > 0 && column + 1 + width <= columns;
     lines += (fits ? " " : column > 0 ? "\n" : "") + word;
     column = fits ? column + 1 + width : width;
   }

@@ -25,7 +25,9 @@ std::string table_text(const TextTable& table);
 /// Tables with rows, one after the other.
 std::string tables_text(const std::vector<TextTable>& tables);
 
-/// Words in lines of at most 100 columns.
-std::string wrapped(std::string_view text);
+constexpr std::size_t kColumns = 100;  ///< of a terminal's text
+
+/// Words in lines of at most so many columns.
+std::string wrapped(std::string_view text, std::size_t columns = kColumns);
 
 }  // namespace kelpie::chart

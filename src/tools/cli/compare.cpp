@@ -138,6 +138,8 @@ void add_compare(CLI::App& app) {
   add_threads(command, options->threads);
   add_out(command, options->out, "folder for compare.json and compare.html");
   options->answer.add_to(*command, "compare.json");
+  add_examples(command, "compare dive.csv --rate 4",
+               "compare dive.bag --config vehicle.toml --split tail");
 }
 
 }  // namespace kelpie::cli

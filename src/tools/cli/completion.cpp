@@ -194,6 +194,9 @@ void add_completion(CLI::App& app) {
       ->check(CLI::IsMember({"bash", "zsh"}));
   script->callback([shell] { say("{}", *shell == "bash" ? kBash : kZsh); });
 
+  add_examples(script, "completion bash > ~/.local/share/bash-completion/completions/kelpie",
+               "completion zsh > ~/.zfunc/_kelpie");
+
   // What the scripts ask; in no help.
   auto words = std::make_shared<std::vector<std::string>>();
   CLI::App* const asked = app.add_subcommand("complete")->group("");

@@ -93,6 +93,8 @@ void add_convert(CLI::App& app) {
   command->add_option("--clock", options->clock, "times: receive (recorder's) or header (sender's)")
       ->check(CLI::IsMember({"receive", "header"}))
       ->capture_default_str();
+  add_examples(command, "convert dive.bag --config vehicle.toml --out dive.csv",
+               "convert dive.db3 --out dive.mcap");
 }
 
 }  // namespace kelpie::cli

@@ -10,7 +10,6 @@
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_c.hpp"
-#include "format/model_json.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -32,7 +31,7 @@ void export_model(const ExportArguments& options) {
   if (!options.header.empty()) {
     check_output("--header", options.header, {options.model, options.c_file});
   }
-  const TrainedModel model = format::read_model(options.model);
+  const TrainedModel model = read_given_model(options.model);
   format::CodeOptions code = options.code;
   code.source = options.model;
   for (const std::string& assignment : options.units) {
@@ -54,7 +53,7 @@ void export_model(const ExportArguments& options) {
 void add_export(CLI::App& app) {
   const auto [command, options] =
       add_command(app, "export", "Write a learned model as C for other programs", export_model);
-  add_file(command, "model", options->model, "model.json of `kelpie learn`")->required();
+  add_model(command, "model", options->model);
   add_file(command, "--c", options->c_file, "C file to write: C99 that needs nothing but exp()")
       ->required();
   add_file(command, "--header", options->header, "header file to write for who calls it");
@@ -67,6 +66,8 @@ void add_export(CLI::App& app) {
       ->capture_default_str();
   add_list(command, "--units", options->units,
            "units of columns, kept in the file, as in u=m/s,th1=rev/s,udot=m/s^2");
+  add_examples(command, "export --c model.c --header model.h",
+               "export out/tail/model.json --c model.c --float --assess");
 }
 
 }  // namespace kelpie::cli

@@ -182,6 +182,8 @@ void add_identify(CLI::App& app) {
   add_seed(command, options->seed);
   add_out(command, options->out, "folder for the parameters and files of simulators");
   options->answer.add_to(*command, "");
+  add_examples(command, "identify dive.csv --rate 4 --units th1=rev/s,th2=rev/s,th3=rev/s",
+               "identify dive.bag --config vehicle.toml --mass 32.5 --frame FRD");
 }
 
 }  // namespace kelpie::cli

@@ -86,6 +86,8 @@ void add_inspect(CLI::App& app) {
   add_file(command, "--template", options->draft,
            "write the configuration that `kelpie learn` takes by --config to this file, as "
            "types, names and units tell it, with the reasons");
+  add_examples(command, "inspect dive.bag",
+               "inspect dive.tlog --template vehicle.toml --json dive.json");
 }
 
 }  // namespace kelpie::cli

@@ -355,6 +355,8 @@ void add_learn(CLI::App& app) {
            "the end (see `kelpie memory`)");
   add_out(command, options->out, "folder for result.json, report.html, model.json");
   options->answer.add_to(*command, "result.json");
+  add_examples(command, "learn dive.csv --rate 4",
+               "learn dive.bag --config vehicle.toml --split tail --out out/tail");
 }
 
 }  // namespace kelpie::cli

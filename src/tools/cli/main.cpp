@@ -2,6 +2,7 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/run_program.hpp"
 #include "kelpie/core/error.hpp"
 #ifdef KELPIE_WITH_LIVE
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   kelpie::cli::add_convert(app);
   kelpie::cli::add_rollout(app);
   kelpie::cli::add_completion(app);
+  kelpie::cli::add_examples(&app, "learn dive.csv --rate 4", "learn --help");
   kelpie::cli::add_help(app);
   add_moved(app, "bench");
   add_moved(app, "reproduce");

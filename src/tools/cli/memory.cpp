@@ -68,6 +68,7 @@ void add_memory(CLI::App& app) {
       ->callback([options] { show_model(*options); });
   add_task(*command, "forget", "Remove one past model from the file", *options)
       ->callback([options] { forget_model(*options); });
+  add_examples(command, "memory list past.json", "memory show past.json udot:2");
 }
 
 }  // namespace kelpie::cli

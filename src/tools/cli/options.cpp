@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include "cli/output.hpp"
 #include "core/text.hpp"
+#include "format/model_json.hpp"
+#include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 
 namespace kelpie::cli {
@@ -23,6 +27,25 @@ void add_files(CLI::App* command, const std::string& name, Words& files,
 void add_folder(CLI::App* command, const std::string& name, std::string& folder,
                 const std::string& meaning) {
   command->add_option(name, folder, meaning)->type_name("FOLDER");
+}
+
+void add_model(CLI::App* command, const std::string& name, std::string& model) {
+  model = kLearnedModel;
+  add_file(command, name, model, "model.json of `kelpie learn`")->capture_default_str();
+}
+
+TrainedModel read_given_model(const std::string& model) {
+  std::error_code none;
+  if (!std::filesystem::exists(model, none)) {
+    throw InputError({.file = model, .line = 0, .field = {}},
+                     "there is no such model; `kelpie learn` makes one, in " +
+                         std::string(kLearnedModel) + " where no --out is given");
+  }
+  return format::read_model(model);
+}
+
+void add_examples(CLI::App* command, const std::string& first, const std::string& second) {
+  command->footer("Examples:\n  kelpie " + first + "\n  kelpie " + second);
 }
 
 void add_out(CLI::App* command, std::string& folder, const std::string& meaning) {

@@ -12,6 +12,7 @@
 #include "file/atomic_file.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/model/trained_model.hpp"
 
 namespace kelpie::cli {
 
@@ -37,6 +38,19 @@ void add_files(CLI::App* command, const std::string& name, Words& files,
                const std::string& meaning);
 void add_folder(CLI::App* command, const std::string& name, std::string& folder,
                 const std::string& meaning);
+
+/// The model.json that `kelpie learn` writes where nothing else is said.
+inline constexpr const char* kLearnedModel = "out/learn/model.json";
+
+/// An option or argument for a model of `kelpie learn`, by default kLearnedModel.
+void add_model(CLI::App* command, const std::string& name, std::string& model);
+
+/// Reads the model of add_model(). Throws InputError as format::read_model() does; a missing file
+/// is told with the command that makes one.
+TrainedModel read_given_model(const std::string& model);
+
+/// Two command lines, without "kelpie ", for the end of the help.
+void add_examples(CLI::App* command, const std::string& first, const std::string& second);
 
 /// The option --out of a folder with a default.
 void add_out(CLI::App* command, std::string& folder, const std::string& meaning);

@@ -52,8 +52,17 @@ void refuse_special(std::string_view option, const fs::path& file) {
 
 bool silent = false;
 bool hushed = false;
+std::string* kept = nullptr;
 
 }  // namespace
+
+KeptOutput::KeptOutput() {
+  kept = &text_;
+}
+
+KeptOutput::~KeptOutput() {
+  kept = nullptr;
+}
 
 void be_silent() {
   silent = true;
@@ -81,7 +90,9 @@ void print_safely(std::FILE* stream, std::string_view text) {
 }
 
 void print_unless_silent(std::FILE* stream, std::string_view text) {
-  if (!silent && !(hushed && stream == stdout)) {
+  if (kept != nullptr) {
+    kept->append(text);
+  } else if (!silent && !(hushed && stream == stdout)) {
     print_safely(stream, text);
   }
 }

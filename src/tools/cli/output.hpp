@@ -17,7 +17,22 @@ namespace kelpie::cli {
 /// ends and tabs stay.
 void print_safely(std::FILE* stream, std::string_view text);
 
-/// print_safely(), unless be_silent() was called.
+/// What say() and warn() print while this object lives, in the order of printing, kept instead of
+/// printed: for programs that run commands. At most one instance at a time, before other threads.
+class KeptOutput {
+ public:
+  KeptOutput();
+  ~KeptOutput();
+  KeptOutput(const KeptOutput&) = delete;
+  KeptOutput& operator=(const KeptOutput&) = delete;
+
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// print_safely(), unless be_silent() was called or a KeptOutput lives.
 void print_unless_silent(std::FILE* stream, std::string_view text);
 
 /// Switches say() and warn() off, for a process that only helps another process; errors are still

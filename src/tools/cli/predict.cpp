@@ -18,7 +18,6 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "format/learned_logs.hpp"
-#include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -235,7 +234,7 @@ void print_score(const std::string& name, const std::vector<double>& truth,
 
 void predict(const PredictArguments& options) {
   check_output("--out", options.out, {options.source.path, options.model, options.config});
-  const TrainedModel model = format::read_model(options.model);
+  const TrainedModel model = read_given_model(options.model);
   const log::LogConfig config = log::read_log_config(options.config);
   log::Roles roles = config.roles;
   roles.inputs = model.input_names;
@@ -285,12 +284,14 @@ void add_predict(CLI::App& app) {
   add_clock_options(*command, options->time, options->rate_hz);
   add_units_option(*command, options->units);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
-  add_file(command, "--model", options->model, "model.json of `kelpie learn`")->required();
+  add_model(command, "--model", options->model);
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")
       ->capture_default_str()
       ->type_name("FILE");
   command->add_flag("--jacobian", options->jacobian,
                     "also the derivatives of every prediction, as columns d(udot)/d(u)");
+  add_examples(command, "predict dive2.csv",
+               "predict dive2.csv --model out/tail/model.json --out dive2_predicted.csv");
 }
 
 }  // namespace kelpie::cli

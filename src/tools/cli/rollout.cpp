@@ -19,7 +19,6 @@
 #include "cli/progress.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
-#include "format/model_json.hpp"
 #include "format/rollout_json.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
@@ -216,7 +215,7 @@ void rollout(const RolloutArguments& options) {
   options.answer.begin();
   constexpr std::size_t kMostHorizons = 100;
   require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
-  const TrainedModel model = format::read_model(options.model);
+  const TrainedModel model = read_given_model(options.model);
   const OpenLoop loop = open_loop(model);
   if (options.start.empty()) {
     const log::Dataset data = study::aligned(read_judged_log(options, model), model.alignment);
@@ -237,7 +236,7 @@ void add_rollout(CLI::App& app) {
       "Integrate a learned model in open loop: judge it on a log, or follow commands", rollout);
   options->log.add_to(*command);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
-  add_file(command, "--model", options->model, "model.json of `kelpie learn`")->required();
+  add_model(command, "--model", options->model);
   add_list(command, "--start", options->start,
            "velocities to start from, as in u=0.5,v=0,r=0: the log then holds the commands, "
            "and what comes of them is written");
@@ -260,6 +259,8 @@ void add_rollout(CLI::App& app) {
       ->capture_default_str();
   add_out(command, options->out, "folder for the results");
   options->answer.add_to(*command, "result.json");
+  add_examples(command, "rollout dive.csv --rate 4 --horizons 1,10,60",
+               "rollout commands.csv --start u=0.5,v=0,r=0");
 }
 
 }  // namespace kelpie::cli

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_program.hpp"
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "chart/text_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "core/text.hpp"
@@ -87,6 +95,16 @@ std::string failure_message(const CLI::App* app, const CLI::Error& error) {
   return unknown.empty() ? said : unknown + said.substr(said.find('\n') + 1);
 }
 
+// A command that does nothing by itself and was given nothing to do: its help, as for `kelpie`.
+const CLI::App* idle_command(const CLI::App& app) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) {
+    last = last->get_subcommands().front();
+  }
+  const bool is_idle = last->get_require_subcommand_min() > 0 && app.remaining_size(true) == 0;
+  return is_idle ? last : nullptr;
+}
+
 // What was said before an error appears before it.
 int failed(int code, const std::exception& error) {
   static_cast<void>(std::fflush(stdout));  // it fails already
@@ -94,10 +112,47 @@ int failed(int code, const std::exception& error) {
   return code;
 }
 
-// `--help-all` in the form that help2man makes a manual page of: a heading in stars is a section, a
-// line that ends in a colon with indented ones below a subsection.
+constexpr std::size_t kColumn = 30;  // of the explanations, as CLI11 has it
+
+// $COLUMNS, the terminal's width, or 80; no line is longer than can be read with ease.
+std::size_t help_width() {
+  constexpr std::size_t kLeast = 60;
+  constexpr std::size_t kUsual = 80;
+  constexpr std::size_t kMost = 100;
+  winsize window{};
+  double width = 0.0;
+  const char* const columns = std::getenv("COLUMNS");  // NOLINT(concurrency-mt-unsafe)
+  if (columns == nullptr || !parse_number(columns, width)) {
+    const bool is_terminal = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
+    width = is_terminal ? window.ws_col : kUsual;
+  }
+  return static_cast<std::size_t>(std::clamp<double>(width, kLeast, kMost));
+}
+
+std::string in_lines(const std::string& text, std::size_t indentation) {
+  return chart::wrapped(text, help_width() - indentation);
+}
+
+// Wrapped at the terminal's width; and `--help-all` in the form that help2man makes a manual page
+// of: a heading in stars is a section, a line that ends in a colon with indented ones below a
+// subsection.
 class HelpFormat final : public CLI::Formatter {
  public:
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return in_lines(Formatter::make_option_desc(option), kColumn);
+  }
+
+  std::string make_description(const CLI::App* app) const override {
+    return in_lines(app->get_description(), 0) + "\n";
+  }
+
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream line;
+    CLI::detail::format_help(line, command->get_name(),
+                             in_lines(command->get_description(), kColumn), kColumn);
+    return line.str();
+  }
+
   std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const override {
     if (mode == CLI::AppFormatMode::Normal) {
       return Formatter::make_subcommands(app, mode);
@@ -134,6 +189,13 @@ class HelpFormat final : public CLI::Formatter {
   }
 };
 
+void give_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
+  app.formatter(format);
+  for (CLI::App* const command : app.get_subcommands({})) {
+    give_format(*command, format);
+  }
+}
+
 }  // namespace
 
 int run_program(CLI::App& app, int argc, char** argv) {
@@ -142,6 +204,13 @@ int run_program(CLI::App& app, int argc, char** argv) {
     app.failure_message(failure_message);
     try {
       app.parse(argc, argv);
+    } catch (const CLI::RequiredError& error) {
+      if (const CLI::App* const idle = idle_command(app)) {
+        print_safely(stderr, idle->help(idle == &app ? "" : app.get_name()));
+      } else {
+        app.exit(error);
+      }
+      return kBadInput;
     } catch (const CLI::ParseError& error) {
       if (app.exit(error) != 0) {
         return kBadInput;
@@ -156,12 +225,22 @@ int run_program(CLI::App& app, int argc, char** argv) {
   }
 }
 
+void run_command(CLI::App& app, const std::vector<std::string>& words) {
+  check_numbers(app);
+  try {
+    app.parse(
+        std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last first
+  } catch (const CLI::ParseError& error) {
+    throw InputError(std::string(trimmed(failure_message(&app, error))));
+  }
+}
+
 std::vector<const CLI::App*> visible_commands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); });
 }
 
 void add_help(CLI::App& app) {
-  app.formatter(std::make_shared<HelpFormat>());
+  give_format(app, std::make_shared<HelpFormat>());
   app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
 }
 

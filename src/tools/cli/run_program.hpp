@@ -2,11 +2,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 namespace kelpie::cli {
 
 /// Parses the command line and runs the named subcommand. Returns the exit code: 0, 1 for a
 /// failure, 2 for bad input. Errors are printed to the standard error stream.
 int run_program(CLI::App& app, int argc, char** argv);
+
+/// Parses the words of a command line, without the program's name, and runs the named subcommand.
+/// Throws InputError on words that the command doesn't take, and what the command throws.
+void run_command(CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace kelpie::cli

@@ -48,6 +48,8 @@ void add_simulate(CLI::App& app) {
   add_file(command, "scenario", options->scenario, "Scenario file (scenarios/*.toml)")->required();
   add_file(command, "--out", options->out, "CSV file to write")->required();
   command->add_option("--seed", options->seed, "Instead of the scenario's seed");
+  add_examples(command, "simulate scenarios/diagnosis.toml --out damaged.csv",
+               "simulate scenarios/diagnosis.toml --out other.csv --seed 2");
 }
 
 }  // namespace kelpie::cli

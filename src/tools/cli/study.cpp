@@ -231,6 +231,8 @@ void add_study(CLI::App& app) {
   options->answer.add_to(*command, kStudyJson);
   part->excludes(merge)->excludes(against)->excludes(worse);
   command->callback([options] { run_study(*options); });
+  add_examples(command, "study fleet.toml",
+               "study fleet.toml --against out/before/study.json --fail-if-worse 0.02");
 }
 
 }  // namespace kelpie::cli

@@ -233,6 +233,8 @@ void add_tune(CLI::App& app) {
   add_out(command, options->out,
           "folder for tuned.toml, tune.json, tune.html and the journal to resume from");
   options->answer.add_to(*command, "tune.json");
+  add_examples(command, "tune dive.csv --rate 4 --candidates 20",
+               "tune dive1.csv dive2.csv --search gamma=0.05:2:log --set buffer=500");
 }
 
 }  // namespace kelpie::cli

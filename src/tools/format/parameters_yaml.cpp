@@ -17,6 +17,11 @@ std::string quoted(const std::string& text) {
   return file::one_line(text);
 }
 
+// YAML knows no NaN that all readers agree on.
+std::string number(fmt::format_string<double> format, double value) {
+  return std::isfinite(value) ? fmt::format(format, double{value}) : "null";
+}
+
 std::string scale_text(const study::Identification& found) {
   switch (found.scale) {
     case study::ScaleSource::thrust:
@@ -41,9 +46,10 @@ std::string parameter_line(const study::Identification& found, std::size_t place
     return head + "}\n";
   }
   const double half = half_width90(parameter);
-  return fmt::format("{}, value: {:.6g}, error: {:.3g}, interval90: [{:.6g}, {:.6g}]}}\n", head,
-                     parameter.value, parameter.error, parameter.value - half,
-                     parameter.value + half);
+  return fmt::format("{}, value: {}, error: {}, interval90: [{}, {}]}}\n", head,
+                     number("{:.6g}", parameter.value), number("{:.3g}", parameter.error),
+                     number("{:.6g}", parameter.value - half),
+                     number("{:.6g}", parameter.value + half));
 }
 
 // An interval without an upper end ends at infinity (YAML 1.2).
@@ -70,7 +76,7 @@ std::string correlations(const study::Identification& found) {
   for (const std::size_t a : told) {
     text += "    - [";
     for (const std::size_t b : told) {
-      text += fmt::format("{}{:.3f}", b == told.front() ? "" : ", ", found.fit.correlation(a, b));
+      text += (b == told.front() ? "" : ", ") + number("{:.3f}", found.fit.correlation(a, b));
     }
     text += "]\n";
   }
@@ -121,18 +127,18 @@ std::string parameters_yaml(const study::Identification& found, Frame frame) {
   std::string text = fmt::format(
       "# Parameters of Fossen's equation in the plane, by `kelpie identify`: docs/identify.md\n"
       "format: kelpie-parameters\nversion: 1\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
-      "scale: {}\nmisfit: {:.3g}\n",
+      "scale: {}\nmisfit: {}\n",
       quoted(found.source), frame == Frame::flu ? "FLU" : "FRD", found.training_rows,
-      quoted(found.split), quoted(scale_text(found)), found.fit.misfit);
+      quoted(found.split), quoted(scale_text(found)), number("{:.3g}", found.fit.misfit));
   if (found.mass_kg) {
     text += fmt::format("mass_kg: {:.6g}\n", *found.mass_kg);
   }
   if (!found.held_out.times_s.empty()) {
     text += "held_out_r2:\n";
     for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
-      text += fmt::format("  {}: {{vehicle: {:.4f}, same_terms_untied: {:.4f}}}\n",
-                          quoted(found.targets[axis]), found.held_out.r2[axis],
-                          found.held_out.free_r2[axis]);
+      text += fmt::format("  {}: {{vehicle: {}, same_terms_untied: {}}}\n",
+                          quoted(found.targets[axis]), number("{:.4f}", found.held_out.r2[axis]),
+                          number("{:.4f}", found.held_out.free_r2[axis]));
     }
   }
   text += actuators(found);

@@ -56,6 +56,30 @@ std::vector<std::size_t> find_thrusters(const log::Dataset& data,
   return thrusters;
 }
 
+// Calls `estimate`, and names the log where its rows don't suffice.
+template <typename Estimate>
+auto of_log(const log::Dataset& data, Estimate estimate) {
+  try {
+    return estimate();
+  } catch (const InputError& error) {
+    throw InputError({.file = data.source, .line = 0, .field = {}}, error.what());
+  }
+}
+
+// A log of commands that go with no force (pulses far from 0, a vehicle at rest) has an estimate
+// that is no number.
+void require_numbers(const log::Dataset& data, const PlanarFit& fit) {
+  for (const PlanarParameter& parameter : fit.parameters) {
+    if (parameter.state != ParameterState::not_told &&
+        !(std::isfinite(parameter.value) && std::isfinite(parameter.error))) {
+      throw InputError({.file = data.source, .line = 0, .field = parameter.name},
+                       "is not told by the log: the fit has no finite value for the parameter; the "
+                       "inputs of thrusters have to be speeds that are 0 at rest (pulses rest at "
+                       "1500 µs: [log.actuators] neutral), and every thruster has to run");
+    }
+  }
+}
+
 void require_accelerations(const log::Dataset& data, const PlanarColumns& columns,
                            const PlanarRows& rows, const std::vector<std::size_t>& picked) {
   std::vector<double> accelerations;
@@ -64,7 +88,7 @@ void require_accelerations(const log::Dataset& data, const PlanarColumns& column
       accelerations.push_back(data.target(row)[target]);
     }
   }
-  const auto checks = check_accelerations(rows, accelerations);
+  const auto checks = of_log(data, [&] { return check_accelerations(rows, accelerations); });
   for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
     const auto [correlation, slope] = checks[axis];
     if (correlation < kTuning.identification.least_correlation ||
@@ -191,11 +215,8 @@ Identification identify(const log::Dataset& data, const Split& split, const Plan
   found.training_rows = training.size();
   const PlanarRows rows = planar_rows(data, training, columns);
   require_accelerations(data, columns, rows, training);
-  try {
-    found.fit = fit_planar(rows);
-  } catch (const InputError& error) {
-    throw InputError({.file = data.source, .line = 0, .field = {}}, error.what());
-  }
+  found.fit = of_log(data, [&] { return fit_planar(rows); });
+  require_numbers(data, found.fit);
   for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
     found.targets[axis] = data.target_names[columns.targets[axis]];
   }

@@ -27,8 +27,11 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   write("y.toml", mission_config("", "[live.dds]\ndomain = 233"));
   expect_refused("--config y.toml", "y.toml:16: live.dds.domain: is out of range");
 #else
-  expect_refused("--config x.toml", "--from: is missing");
+  expect_refused("--config x.toml", "--replay: is missing");
 #endif
+  expect_refused("", "--config: is missing");
+  expect_refused("--replay mission.mcap", "mission.mcap: the signals to use are unclear");
+  expect_refused("--config x.toml --replay mission.mcap --from mission.mcap", "--replay excludes");
   expect_refused("--config no.toml --from mission.mcap", "no.toml");
   expect_refused("--config x.toml --from x.toml", "is no recording of messages");
   for (const std::string speed : {"fast", "-1", "0", "-0.0", "nan", "inf", "1e18", "1e-300"}) {

@@ -108,6 +108,11 @@ TEST_F(LiveCommand, LogsOfAutopilotsEndWithTheModelThatLearnGives) {
         run("live --config x.toml --from '" + log.string() + "' --speed max --fresh --out out");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     expect_model_of_learn("out", "auto", "'" + log.string() + "'");
+    EXPECT_NE(outcome.err.find("--from of `kelpie live` is called --replay"), std::string::npos);
+    const Outcome drafted = testing::succeeded(
+        run("live --replay '" + log.string() + "' --speed max --fresh --out drafted"));
+    EXPECT_EQ(model_of("drafted"), model_of("out"));
+    EXPECT_NE(drafted.out.find("taken by types and names"), std::string::npos) << drafted.out;
     fs::remove(folder_ / "x.toml");
   }
 }

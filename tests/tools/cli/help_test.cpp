@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "chart/wording.hpp"
 #include "cli/shell.hpp"
 
 namespace kelpie::help_test {
@@ -22,7 +24,8 @@ class Help : public testing::CommandTest {
 
   std::vector<std::string> commands() {
     const std::string text = help("--help");
-    return matches(text.substr(text.find("Subcommands:")), "\n  ([a-z]+) ");
+    const std::size_t begin = text.find("Subcommands:");
+    return matches(text.substr(begin, text.find("\nExamples:") - begin), "\n  ([a-z]+) ");
   }
 };
 
@@ -38,6 +41,36 @@ TEST_F(Help, OfAllCommandsHasEveryOptionOfEachUnderItsName) {
     }
   }
   EXPECT_NE(all.find("\nkelpie memory show "), std::string::npos);
+}
+
+TEST_F(Help, EndsWithTwoExamplesAndFitsTheTerminal) {
+  for (const std::string width : {"64", "100"}) {
+    for (const std::string& command : commands()) {
+      const std::string text =
+          shell(folder_, "COLUMNS=" + width + " " + KELPIE_COMMAND + " " + command + " --help");
+      const std::size_t examples = text.find("\nExamples:\n");
+      ASSERT_NE(examples, std::string::npos) << command;
+      EXPECT_EQ(matches(text.substr(examples), "\n  kelpie (" + command + " )").size(), 2U) << text;
+      for (const std::string& line : matches(text.substr(0, examples), "([^\n]+)")) {
+        const bool is_explained = line[0] == ' ' && line.find("  ", 3) != std::string::npos;
+        if (is_explained) {
+          EXPECT_LE(chart::code_points(line), std::stoul(width)) << command << "\n" << line;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Help, IsWhatACommandWithNothingToDoSays) {
+  for (const auto& [words, usage] :
+       {std::pair{"", "Usage: kelpie [OPTIONS] SUBCOMMAND"},
+        std::pair{"memory", "Usage: kelpie memory [OPTIONS] SUBCOMMAND"}}) {
+    const testing::Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(usage), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("\nSubcommands:\n"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST_F(Help, MakesAManualPageWithoutFaultOrAPathOfTheBuild) {

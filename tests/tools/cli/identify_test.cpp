@@ -147,6 +147,8 @@ TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
   EXPECT_FALSE(exists("out/vehicle.toml"));
   EXPECT_FALSE(exists("out/gazebo.sdf"));
 
+  write("short.csv", content("log.csv").substr(0, content("log.csv").find("\n4,")));
+  expect_refused("short.csv --split tail", "short.csv: too few rows: 0 windows of 5 s");
   expect_refused("log.csv --targets udot,vdot", "velocity of surge");
   expect_refused("log.csv --inputs u,v,r,th1,th2,t", "has no name of a thruster's speed");
   expect_refused("log.csv --inputs u,v,r,th1 --thrusters th4", "did you mean 'th1'?");

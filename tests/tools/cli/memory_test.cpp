@@ -114,7 +114,7 @@ TEST_F(Memory, BadInputIsRefusedAndNothingLost) {
   expect_refused("learn log.csv --memory m.json", "m.json: file: is not JSON");
   testing::succeeded(run("learn log.csv --memory none.json --set memory=0"));
   expect_refused("memory list none.json", "the memory holds no models yet");
-  expect_refused("memory", "required");
+  expect_refused("memory", "Usage: kelpie memory");
 }
 
 }  // namespace

@@ -44,6 +44,20 @@ TEST_F(Predict, NeedsNeitherTargetsNorTimeAndKeepsEveryRow) {
   EXPECT_LE(table.columns[5][0], 1.0);
 }
 
+TEST_F(Predict, TakesTheModelThatLearnWritesWhereNoneIsNamed) {
+  testing::expect_refused(run("predict log.csv"),
+                          "out/learn/model.json: there is no such model; `kelpie learn` makes one");
+  testing::expect_refused(run("rollout log.csv"), "there is no such model");
+  testing::expect_refused(run("export --c model.c"), "there is no such model");
+  testing::succeeded(run("learn log.csv --out out/learn"));
+  testing::succeeded(run("predict log.csv"));
+  testing::succeeded(predict("log.csv"));
+  EXPECT_EQ(content("predictions.csv"), content("p.csv"));
+  testing::succeeded(run("rollout log.csv"));
+  testing::succeeded(run("export --c model.c"));
+  EXPECT_TRUE(exists("model.c"));
+}
+
 TEST_F(Predict, WordsStayAsTheyWereAndNoInputIsReplaced) {
   write("inputs.csv", "n,u,note\n1,0.1,dive 7\n3,0.3,\n");
   ASSERT_EQ(predict("inputs.csv").exit_code, 0);
