@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -207,9 +208,9 @@ struct UnitFactor {
   double factor;
   const char* si;
 };
-constexpr double kDegree = 0.017453292519943295;
-constexpr std::array kFactors = std::to_array<UnitFactor>({{"deg", kDegree, "rad"},
-                                                           {"deg/s", kDegree, "rad/s"},
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
+constexpr std::array kFactors = std::to_array<UnitFactor>({{"deg", kRadPerDegree, "rad"},
+                                                           {"deg/s", kRadPerDegree, "rad/s"},
                                                            {"cm/s", 0.01, "m/s"},
                                                            {"mm/s", 0.001, "m/s"},
                                                            {"mV", 0.001, "V"}});

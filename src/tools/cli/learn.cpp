@@ -243,7 +243,7 @@ file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std
 
 // What was written and what a user of a new model needs next.
 Answer answer_of(const LearnArguments& options, const study::StreamResult& result, bool has_model,
-                 bool ready, bool has_draft) {
+                 bool ready, bool has_draft, const std::vector<report::NextStep>& next) {
   const fs::path folder = options.out;
   const std::string model = (folder / "model.json").string();
   Answer answer{.verdict = report::verdict_text(result),

@@ -86,31 +86,13 @@ std::vector<Ranked> ranking(const study::Comparison& comparison) {
   return ranked;
 }
 
-// "--set adapt=none" for a variant.
-std::string how_to_use(const Contest& contest) {
-  return contest.kind == ContenderKind::variant ? "--set " + contest.name : contest.name;
+// What to use, in one sentence.
+std::string advice_headline(const study::Comparison& comparison) {
+  const std::string advice = settings_advice(comparison);
+  return advice.empty() ? recommendation(comparison).front() : advice;
 }
 
 }  // namespace
-
-std::string comparison_verdict(const study::Comparison& comparison) {
-  const std::vector<Ranked> ranked = ranking(comparison);
-  const auto kelpie = std::ranges::find(ranked, ContenderKind::kelpie,
-                                        [](const Ranked& one) { return one.contest->kind; });
-  if (kelpie == ranked.end()) {
-    return "kelpie has no R² on held-out rows, so there is nothing to compare.";
-  }
-  const Ranked& best = ranked.front();
-  if (best.mean <= kTuning.clear_r2) {
-    return "Nothing tried predicts better than the mean of the held-out rows.";
-  }
-  if (best.mean > kelpie->mean + kTuning.clear_r2) {
-    return fmt::format("{} is better than kelpie as it is, by {} of R² in the mean of the axes.",
-                       how_to_use(*best.contest), chart::decimal(best.mean - kelpie->mean));
-  }
-  return fmt::format("Keep kelpie as it is: nothing tried is better by more than {} of R².",
-                     kTuning.clear_r2);
-}
 
 chart::TextTable ranked_view(const study::Comparison& comparison) {
   chart::TextTable table{"Ranked by R² on held-out rows", {"", "mean of the axes"}, {}};
@@ -227,7 +209,7 @@ std::string comparison_html(const study::Comparison& comparison) {
   const study::StreamResult& kelpie = comparison.contests.front().stream;
   const std::string log = std::filesystem::path(kelpie.source).filename().string();
   std::string opening = chart::paragraph("over", "kelpie beside simpler models on " + log) +
-                        chart::heading(1, comparison_verdict(comparison)) +
+                        chart::heading(1, advice_headline(comparison)) +
                         chart::html_table(ranked_view(comparison));
   std::string advice;
   for (const std::string& paragraph : recommendation(comparison)) {

@@ -37,9 +37,6 @@ std::string contenders_figure(const study::Comparison& comparison, std::size_t a
 
 // All require a finished comparison with kelpie as the first contest.
 
-/// The contender to use, in one sentence.
-std::string comparison_verdict(const study::Comparison& comparison);
-
 /// A row per contender with R² on held-out rows, the best mean of the axes first.
 chart::TextTable ranked_view(const study::Comparison& comparison);
 
