@@ -19,7 +19,7 @@ from ._splits import BlockSplit
 from ._studies import StudyResult, compare, identify, report, tune
 
 __all__ = ["Alignment", "BlockSplit", "DeadReckoning", "DynamicsModel", "LogArrays", "OnlineSVR",
-           "PlausibilityWarning", "RolloutResult", "StudyResult", "Verdict", "__version__", "compare", "identify", "plot",
-           "read_log", "report", "tune"]
+           "PlausibilityWarning", "RolloutResult", "StudyResult", "Verdict", "__version__",
+           "compare", "identify", "plot", "read_log", "report", "tune"]
 
 del _python

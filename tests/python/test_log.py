@@ -179,12 +179,12 @@ def drive(rows=1500, step=0.2):
     return np.array(found)
 
 
-@pytest.mark.parametrize("mistake, words", [
-    (lambda f: f.assign(r=np.rad2deg(f.r)), "r is in degrees per second, rdot in rad/s²"),
-    (lambda f: f.assign(udot=-f.udot), "udot has the sign opposite to the slope of u"),
-    (lambda f: f.drop(columns="t"), "times as many rows per second as said"),
+@pytest.mark.parametrize("mistake, rate, words", [
+    (lambda f: f.assign(r=np.rad2deg(f.r)), None, "r is in degrees per second, rdot in rad/s²"),
+    (lambda f: f.assign(udot=-f.udot), None, "udot has the sign opposite to the slope of u"),
+    (lambda f: f.drop(columns="t"), 1.0, "times as many rows per second as said"),
 ])
-def test_fit_warns_of_a_log_that_cannot_be_right(mistake, words):
+def test_fit_warns_of_a_log_that_cannot_be_right(mistake, rate, words):
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame(drive(), columns=["u", "r", "n", "m", "udot", "rdot"])
     frame.insert(0, "t", 0.2 * np.arange(len(frame)))
@@ -193,4 +193,4 @@ def test_fit_warns_of_a_log_that_cannot_be_right(mistake, words):
         warnings.simplefilter("error")
         kelpie.DynamicsModel(**small).fit(frame)
     with pytest.warns(kelpie.PlausibilityWarning, match=re.escape(words)):
-        kelpie.DynamicsModel(**small).fit(mistake(frame))
+        kelpie.DynamicsModel(**small, rate=rate).fit(mistake(frame))

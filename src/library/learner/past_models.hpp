@@ -64,8 +64,8 @@ class PastModels {
   }
   /// Copies the model in service, with the change since its samples; `function`: with this
   /// change. Cost O(n d).
-  void keep(const OnlineSvr& service, const SvrFunction& function,
-            const TermChange& change, double t);
+  void keep(const OnlineSvr& service, const SvrFunction& function, const TermChange& change,
+            double t);
 
   /// The past model that fits, the latest sample included; on trial only.
   std::optional<std::size_t> fitting() const;

@@ -42,8 +42,8 @@ double log_density(double error, double variance) {
 
 }  // namespace
 
-const ChangeMonitor::Lone ChangeMonitor::kUnknown{
-    .variance = kChange.deviation * kChange.deviation};
+const ChangeMonitor::Lone ChangeMonitor::kUnknown{.variance =
+                                                      kChange.deviation * kChange.deviation};
 
 ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> states,
                              std::span<const std::size_t> commands)
@@ -258,8 +258,7 @@ void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error, d
     const double variance = noise + effect * effect * lone.variance;
     lone.likelihood += (robust_log_density(left, variance) - ignored) / start.tau[axis];
     const double weight = robust_weight(left, variance) / start.tau[axis];
-    const double gain =
-        lone.variance * effect / (noise / weight + effect * effect * lone.variance);
+    const double gain = lone.variance * effect / (noise / weight + effect * effect * lone.variance);
     lone.size += gain * left;
     lone.variance *= 1.0 - gain * effect;
     if (lone.likelihood <= 0.0) {

@@ -9,7 +9,7 @@ namespace kelpie::report {
 inline constexpr struct Tuning {
   double first_window_s = 60.0;      ///< of a figure of samples, at first
   double first_window_rows = 120;    ///< of it, at least
-  double before_change = 0.25;      ///< share of that stretch before a change in it
+  double before_change = 0.25;       ///< share of that stretch before a change in it
   double lowest_r2 = -0.2;           ///< R² below is drawn at the edge of a figure
   double shown_below = 4.0;          ///< of a comparison, below the median, per range above it
   double clear_r2 = 0.01;            ///< smallest difference of R² that a recommendation mentions

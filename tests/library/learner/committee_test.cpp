@@ -183,8 +183,8 @@ TEST(Committee, AsksForNoMemoryAfterItWasMade) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   const std::size_t before = testing::allocated_bytes;
   Committee committee = make();
-  const auto known = static_cast<double>(
-      Committee::bytes(2, 3, committee.learner().champion().settings(), {.alone = false, .line = 3}));
+  const auto known = static_cast<double>(Committee::bytes(
+      2, 3, committee.learner().champion().settings(), {.alone = false, .line = 3}));
   EXPECT_LE(static_cast<double>(testing::allocated_bytes - before), 1.01 * known);
   const std::vector<Sample> first = with_terms(wandering_stream(13, 700));
   const std::vector<Sample> second = with_terms(wandering_stream(14, 700, 0.02, 2, 175.0));
