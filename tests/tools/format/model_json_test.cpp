@@ -176,7 +176,7 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
   EXPECT_EQ(refusal(good), "");
   EXPECT_EQ(message_of<InputError>([] {
               format::parse_model_json("{\"format\": ", "m.json");
-            }).substr(0, 26),
+            }).substr(0, 27),
             "m.json: file: is not JSON (");
   auto bad = good;
   bad["format"] = "other";
