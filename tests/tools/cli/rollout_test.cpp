@@ -46,10 +46,10 @@ TEST_F(RolloutCommand, JudgesAModelOnHeldOutRows) {
 }
 
 TEST_F(RolloutCommand, KeepsTheUnitsOfTheModel) {
-  testing::succeeded(run("learn log.csv --units u=km/h,udot=m/s^2 --out out"));
+  testing::succeeded(run("learn log.csv --units u=m/s,udot=m/s^2 --out out"));
   testing::succeeded(rollout("log.csv --horizons 1,10"));
   EXPECT_NE(content("roll/report.html").find("After 10 s surge is within"), std::string::npos);
-  EXPECT_NE(content("roll/report.html").find("u<br/>in km/h"), std::string::npos);
+  EXPECT_NE(content("roll/report.html").find("u<br/>in m/s"), std::string::npos);
 }
 
 TEST_F(RolloutCommand, FollowsCommandsFromAStart) {
