@@ -82,7 +82,7 @@ class LiveCommand : public CommandTest {
     const std::string text = read_text(folder_ / folder / "model.json");
     nlohmann::json model = nlohmann::json::parse(text.empty() ? "{}" : text);
     model.erase("units");
-    return model.empty() ? "" : model.dump();
+    return model.empty() ? "" : model.dump(1);
   }
   void expect_model_of_learn(const std::string& folder, const std::string& align = "auto",
                              const std::string& log = "mission.mcap") {
