@@ -157,11 +157,17 @@ void Committee::relearn_buffer(int rounds) {
   seen_.clear();
   const SampleCollector& buffer = learner_.champion().buffer();
   for (std::size_t i = 0; i < buffer.size(); ++i) {
-    buffer.samples().get(i, sample_);
-    seen_.add(buffer.problem().targets()[i] + learner_.change()(sample_));
+    seen_.add(take_from_buffer(i));
   }
   to_learn_.begin(buffer, rounds);
   relearn_slice();
+}
+
+// Copies a sample of the learner's buffer to sample_; the target, with the change since.
+double Committee::take_from_buffer(std::size_t i) {
+  const SampleCollector& buffer = learner_.champion().buffer();
+  buffer.samples().get(i, sample_);
+  return buffer.problem().targets()[i] + learner_.change()(sample_);
 }
 
 void Committee::relearn_slice() {
@@ -171,8 +177,8 @@ void Committee::relearn_slice() {
   for (std::size_t k = 0; k < kOnline.members.slice && !to_learn_.round_done() && part.spend();
        ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
-      buffer.samples().get(*i, sample_);
-      learn_in_fits(sample_, buffer.problem().targets()[*i] + learner_.change()(sample_), false);
+      const double y = take_from_buffer(*i);
+      learn_in_fits(sample_, y, false);
     }
   }
   std::ranges::for_each(fits_->all(), &SparseRegression::publish);

@@ -136,6 +136,7 @@ class Committee final : public OnlineRegressor {
   void reset();
   void reset_for_new_vehicle();
   void relearn_buffer(int rounds);
+  double take_from_buffer(std::size_t i);
   void relearn_slice();
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
 

@@ -8,12 +8,15 @@
 #include <limits>
 
 #include "core/eigen.hpp"
+#include "learner/tuning.hpp"
 #include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr const auto& kChange = kModelTuning.change;
+constexpr double kHuber = kOnline.members.huber;  // as the members, which follow the monitor
+constexpr double kKept = kOnline.members.kept;
 constexpr double kBefore = -std::numeric_limits<double>::infinity();  // of all times [s]
 
 std::size_t used_terms(const TermSet& terms) {
@@ -23,16 +26,15 @@ std::size_t used_terms(const TermSet& terms) {
 
 // Errors beyond 2.5 of their standard deviations count less.
 double robust_weight(double error, double variance) {
-  const double far = kChange.huber * kChange.huber * variance;
+  const double far = kHuber * kHuber * variance;
   return error * error > far ? far / (error * error) : 1.0;
 }
 
 // With tails of Huber's (1964) loss.
 double robust_log_density(double error, double variance) {
   const double deviations = std::abs(error) / std::sqrt(variance);
-  const double square = deviations <= kChange.huber
-                            ? deviations * deviations
-                            : kChange.huber * (2.0 * deviations - kChange.huber);
+  const double square =
+      deviations <= kHuber ? deviations * deviations : kHuber * (2.0 * deviations - kHuber);
   return -0.5 * (square + std::log(variance));
 }
 
@@ -246,17 +248,17 @@ double ChangeMonitor::lone_effect(std::size_t lone, std::size_t axis) const {
   return lone < causes() ? effect_[lone] : effect_[commands_ + (lone - causes()) * axes() + axis];
 }
 
-// As observe() with one size alone; `error`: of the vehicle before, `without`: of the fit. A size
-// that explains less than no change begins anew (CUSUM: Page 1954), and so at the change.
-void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error, double without) {
-  const double noise = start.scatter[axis] * start.scatter[axis] * (1.0 + leverage_);
-  const double ignored = robust_log_density(without, noise);
+// As observe() with one size alone; `error`: of the vehicle before, `unchanged`: the log density of
+// no change. A size that explains less than no change begins anew (CUSUM: Page 1954), and so at the
+// change.
+void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error, double noise,
+                                 double unchanged) {
   for (std::size_t k = 0; k < start.lone.size(); ++k) {
     Lone& lone = start.lone[k];
     const double effect = lone_effect(k, axis);
     const double left = error - effect * lone.size;
     const double variance = noise + effect * effect * lone.variance;
-    lone.likelihood += (robust_log_density(left, variance) - ignored) / start.tau[axis];
+    lone.likelihood += (robust_log_density(left, variance) - unchanged) / start.tau[axis];
     const double weight = robust_weight(left, variance) / start.tau[axis];
     const double gain = lone.variance * effect / (noise / weight + effect * effect * lone.variance);
     lone.size += gain * left;
@@ -281,10 +283,9 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
     const double unknown = effect.dot(gain);
     const double without = against_fit ? error_[a] : y[a] - value_;
     const double error = y[a] - value_ - effect.dot(size);
-    observe_lone(start, a, y[a] - value_, without);
-    start.likelihood +=
-        (robust_log_density(error, noise + unknown) - robust_log_density(without, noise)) /
-        start.tau[a];
+    const double unchanged = robust_log_density(without, noise);
+    observe_lone(start, a, y[a] - value_, noise, unchanged);
+    start.likelihood += (robust_log_density(error, noise + unknown) - unchanged) / start.tau[a];
     const double gained = log_density(error, noise + unknown) - log_density(without, noise);
     start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
     start.samples += 1.0 / start.tau[a];
@@ -401,9 +402,9 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
 ChangeMonitor::Event ChangeMonitor::settle() {
   std::ranges::transform(starts_[changed_start_].theta, told_, step_.begin(), std::plus<>{});
   fit_.set_theta(step_);
-  if (samples_ > kChange.kept) {
-    fit_.limit_rows(std::llround(static_cast<double>(fit_.rows()) * kChange.kept / samples_));
-    samples_ = kChange.kept;
+  if (samples_ > kKept) {
+    fit_.limit_rows(std::llround(static_cast<double>(fit_.rows()) * kKept / samples_));
+    samples_ = kKept;
   }
   changed_start_ = kMostStarts;
   std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });

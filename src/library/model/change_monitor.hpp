@@ -115,7 +115,7 @@ class ChangeMonitor {
   void effects(const Start& start, std::size_t axis);
   double lone_effect(std::size_t lone, std::size_t axis) const;
   void observe(Start& start, std::span<const double> y, bool against_fit);
-  void observe_lone(Start& start, std::size_t axis, double error, double without);
+  void observe_lone(Start& start, std::size_t axis, double error, double noise, double unchanged);
   void mix_sizes(const Start& start);
   const Start* most_evident() const;
   Start& youngest_with(double evidence);

@@ -103,7 +103,6 @@ inline constexpr struct ModelTuning {
     double step_s = 0.2;             ///< s between two rows that count; by hand
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
     double prior = 1.0;              ///< of a term without effect [samples]; by hand
-    double huber = 2.5;              ///< standard deviations of full weight; as SparseRegression
     std::size_t least_errors = 64;   ///< before the usual error is known; by hand
     std::size_t scatter_every = 16;  ///< errors between two medians; by hand
     std::uint64_t error_every = 4;   ///< rows per error of the usual error: 200 s in its window
@@ -123,7 +122,6 @@ inline constexpr struct ModelTuning {
     double settle_s = 60.0;          ///< s in which coefficients follow a change; by hand
     double move_every_s = 1.0;       ///< s between two steps; by hand
     double probation_s = 120.0;      ///< s in which a change may be withdrawn; by hand
-    double kept = 300.0;             ///< independent samples of before a change; as the members'
   } change;
 
   /// Practice of rollouts (model/open_loop_practice.hpp).
