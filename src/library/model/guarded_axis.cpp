@@ -21,8 +21,10 @@ struct Column {
   double mean = 0.0;
   double scatter = 0.0;
   double samples = 0.0;
-  void add(double value) {
+  double largest = 0.0;  // magnitude, in scaled units
+  void add(double value, double zero) {
     samples += 1.0;
+    largest = std::max(largest, std::abs(value - zero));
     const double before = value - mean;
     mean += before / samples;
     scatter += before * (value - mean);
@@ -39,21 +41,25 @@ double scaled_value(const AxisScaling& scaling, const ScaledInput& z, double y, 
 
 Columns later_half(const AxisScaling& scaling, const ThinnedRows& rows) {
   Columns columns{};
+  const std::array<double, kMostInputs> zeros{};
+  const std::size_t inputs = scaling.input.dimension();
+  const ScaledInput zero = scaling.input.apply(std::span(zeros).first(inputs));
   for (std::size_t i = rows.size() / 2; i < rows.size(); ++i) {
     const ScaledInput z = scaling.input.apply(rows[i].x);
-    for (std::size_t k = 0; k <= scaling.input.dimension(); ++k) {
-      columns[k].add(scaled_value(scaling, z, rows[i].y, k));
+    for (std::size_t k = 0; k <= inputs; ++k) {
+      columns[k].add(scaled_value(scaling, z, rows[i].y, k), scaled_value(scaling, zero, 0.0, k));
     }
   }
   return columns;
 }
 
 // Whether the later half stays within a small part of the scale: in the target, or in an input.
-// Constant columns tell nothing.
+// Constant columns tell nothing, nor does a command that is held at a value like those before.
 bool tiny_in(const AxisScaling& scaling, const ThinnedRows& rows) {
   const Columns columns = later_half(scaling, rows);
   return std::ranges::any_of(columns, [](const Column& column) {
-    return column.scatter > 0.0 && column.deviation() < kGuard.tiny;
+    return column.scatter > 0.0 && column.deviation() < kGuard.tiny &&
+           column.largest < kGuard.near_zero;
   });
 }
 
@@ -128,7 +134,7 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   }
   feed();
   look(t);
-  candidate_serves_ = probation_ && trusted().scaling() != nullptr && !trusted().plausible(x);
+  candidate_serves_ = probation_ && trusted().scaling() != nullptr && trusted().far(x);
   return decision;
 }
 
@@ -290,7 +296,6 @@ void GuardedAxis::begin_anew(double t) {
     }
   }
   first_.drop_oldest(first);
-  young_until_ = t + kGuard.confirmed_young_s;
 }
 
 void GuardedAxis::feed() {

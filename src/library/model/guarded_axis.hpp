@@ -16,19 +16,21 @@ namespace kelpie {
 
 /// An axis guarded against garbage: a scale is trusted after probation only.
 ///
-/// A sample more than 10 standard deviations away is implausible for an axis. The trusted axis
-/// never learns implausible samples, or samples among these. When implausible samples have come for
-/// half a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of
-/// the candidate follows. The candidate is in service after implausible inputs, the trusted axis
-/// after all other samples. The candidate takes the place of the trusted axis when implausible
-/// samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when the candidate
-/// explains half of the variance of these samples.
+/// A sample more than 10 standard deviations away is implausible for an axis, unless each input
+/// stays within three times its largest magnitude so far (ScaleTracker). The trusted axis never
+/// learns implausible samples, or samples among these. When implausible samples have come for half
+/// a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of the
+/// candidate follows. The candidate is in service after inputs more than 10 standard deviations
+/// away, the trusted axis after all other samples. The candidate takes the place of the trusted
+/// axis when implausible samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when
+/// the candidate explains half of the variance of these samples.
 ///
 /// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
 /// for 60 s after a candidate took over, the guard looks every 5 s at the later half of the
-/// samples: when the target or an input stays within 0.12 standard deviations, and the axis
-/// explains next to nothing, a new axis learns this half and is trusted, and the former axis
-/// becomes the candidate. A candidate with too large a scale begins again in the same way.
+/// samples: when the target or an input stays within 0.12 standard deviations and within 0.36 of
+/// zero, and the axis explains next to nothing, a new axis learns this half and is trusted, and the
+/// former axis becomes the candidate. A candidate with too large a scale begins again in the same
+/// way.
 ///
 /// One axis learns a sample, so that the guard adds no work to an update, except to the few updates
 /// in which a candidate begins. Without `track`, every sample is plausible.
@@ -132,7 +134,7 @@ class GuardedAxis final : public OnlineRegressor {
   std::vector<StoredPastModel> given_;  ///< for a new axis; own past models are in a wrong scale
   std::size_t trusted_ = 0;             ///< number of the trusted axis
   bool probation_ = false;              ///< the other axis is a candidate
-  bool candidate_serves_ = false;       ///< the inputs of the last sample were implausible
+  bool candidate_serves_ = false;       ///< the inputs of the last sample were far away
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small
   bool trusted_last_ = true;
 

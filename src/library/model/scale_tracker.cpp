@@ -14,6 +14,10 @@ namespace {
 
 constexpr const auto& kScaleTuning = kModelTuning.scale;
 
+bool far_beyond(double value, double largest) {
+  return std::abs(value) > kScaleTuning.beyond * largest;
+}
+
 }  // namespace
 
 ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, TermSet terms,
@@ -27,33 +31,63 @@ ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, T
       target_moments_(given_ ? 0 : 1, kScaleTuning.remembered),
       term_moments_(given_ ? 0 : terms_.size(), kScaleTuning.remembered),
       term_values_(terms_.size()),
+      largest_(inputs),
       scaling_(std::move(given)) {
   next_.input.mean.reserve(inputs);
   next_.input.whitening = Matrix(inputs, inputs);
   next_.term_scale.resize(terms_.size());
+  if (scaling_) {
+    see(scaling_->input);
+  }
 }
 
-bool ScaleTracker::plausible(std::span<const double> x) const {
+bool ScaleTracker::plausible(std::span<const double> x, double y) const {
+  if (far(y)) {
+    return false;
+  }
+  bool beyond = false;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    beyond = beyond || far_beyond(x[i], largest_[i]);
+  }
+  return !beyond || !far(x);
+}
+
+bool ScaleTracker::far(std::span<const double> x) const {
   // NOLINTNEXTLINE(bugprone-unchecked-optional-access): required
   const InputScaling& input = scaling_->input;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (input.whitening(i, i) == 0.0 && x[i] != input.mean[i]) {
-      return false;  // the input has never moved
+      return true;  // the input has never moved
     }
   }
-  return as_vector(input.apply(x)).lpNorm<Eigen::Infinity>() <= kScaleTuning.far;
+  return as_vector(input.apply(x)).lpNorm<Eigen::Infinity>() > kScaleTuning.far;
 }
 
-bool ScaleTracker::plausible(std::span<const double> x, double y) const {
+bool ScaleTracker::far(double y) const {
   // NOLINTNEXTLINE(bugprone-unchecked-optional-access): required
-  return std::abs(scaling_->target.apply(y)) <= kScaleTuning.far && plausible(x);
+  return std::abs(scaling_->target.apply(y)) > kScaleTuning.far;
 }
 
 void ScaleTracker::restart() {
   input_moments_ = Moments(inputs_, kScaleTuning.remembered);
   target_moments_ = Moments(1, kScaleTuning.remembered);
   term_moments_ = Moments(terms_.size(), kScaleTuning.remembered);
+  std::ranges::fill(largest_, 0.0);
   observed_ = 0;
+}
+
+void ScaleTracker::see(std::span<const double> x) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    largest_[i] = std::max(largest_[i], std::abs(x[i]));
+  }
+}
+
+// As after many samples of this scale.
+void ScaleTracker::see(const InputScaling& scaling) {
+  const Matrix covariance = scaling.covariance();
+  for (std::size_t i = 0; i < inputs_; ++i) {
+    largest_[i] = std::abs(scaling.mean[i]) + kScaleTuning.extreme * std::sqrt(covariance(i, i));
+  }
 }
 
 void ScaleTracker::lighten(std::size_t count) {
@@ -76,6 +110,7 @@ void ScaleTracker::resume_from(AxisScaling scaling) {
   term_moments_.assume(std::vector<double>(terms_.size()), variances(scaling.term_scale),
                        kScaleTuning.assumed);
   scaling_ = std::move(scaling);
+  see(scaling_->input);
 }
 
 void ScaleTracker::observe(std::span<const double> x, double y) {
@@ -83,7 +118,11 @@ void ScaleTracker::observe(std::span<const double> x, double y) {
     return;
   }
   ++observed_;
-  far_ = scaling_ && !plausible(x, y);
+  const bool far_inputs = scaling_ && far(x);
+  far_ = far_inputs || (scaling_ && far(y));
+  if (!far_inputs) {
+    see(x);
+  }
   input_moments_.add(x);
   target_moments_.add({&y, 1});
   terms_.evaluate(x, term_values_);
@@ -148,6 +187,7 @@ void ScaleTracker::visit(Archive& archive) {
   archive.part("moments", input_moments_);
   archive.part("target_moments", target_moments_);
   archive.part("term_moments", term_moments_);
+  archive.numbers(largest_);
   bool known = scaling_.has_value();
   archive.flag(known);
   archive.require(known || !given_, "lacks the scaling it was given");
@@ -180,8 +220,11 @@ std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs) {
     const double below = kScaleTuning.far * (median - quantile(column, 0.05));
     const double above = kScaleTuning.far * (quantile(column, 0.95) - median);
     const double most = std::max(below, above);
+    std::ranges::transform(column, column.begin(), [](double one) { return std::abs(one); });
+    const double largest = k < inputs ? quantile(column, 0.95) : 0.0;
     for (std::size_t i = 0; i < plausible.size(); ++i) {
-      plausible[i] = plausible[i] && std::abs(value(i, k) - median) <= most;
+      const bool far = std::abs(value(i, k) - median) > most;
+      plausible[i] = plausible[i] && !(far && far_beyond(value(i, k), largest));
     }
   }
   return plausible;

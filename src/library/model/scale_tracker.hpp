@@ -20,7 +20,9 @@ namespace kelpie {
 /// times in a life. The scale never decreases, so that a calm period does not rescale the data.
 /// next() offers a new scale; the owner switches with adopt().
 ///
-/// A sample more than 10 standard deviations away is implausible; GuardedAxis keeps implausible
+/// A target more than 10 standard deviations away is implausible, and so are inputs as far away of
+/// which one exceeds three times its largest magnitude so far: the standard deviation of a command
+/// that is constant for minutes says nothing of the next step. GuardedAxis keeps implausible
 /// samples from the axis, or lets a candidate learn them.
 class ScaleTracker {
  public:
@@ -34,9 +36,12 @@ class ScaleTracker {
   /// The scale in use; null before the first adopt() of a scale that is measured.
   const AxisScaling* scaling() const { return scaling_ ? &*scaling_ : nullptr; }
 
-  /// Whether inputs, or a sample, are plausible. Require scaling().
-  bool plausible(std::span<const double> x) const;
+  /// Whether a sample is plausible. Requires scaling().
   bool plausible(std::span<const double> x, double y) const;
+
+  /// Whether inputs are more than 10 standard deviations away, or one moves that never did.
+  /// Requires scaling().
+  bool far(std::span<const double> x) const;
 
   /// Adds a sample to the statistics, unless the scale is final. Cost O(d² + m²) for m terms.
   /// Allocates nothing.
@@ -57,7 +62,7 @@ class ScaleTracker {
 
   /// The next scale, or null; valid until the next call. The first scale comes when the samples
   /// determine it (an input and the target move). Later scales are looked for at every 64th sample,
-  /// and at once after an implausible sample, but not during a change of scale. Allocates nothing,
+  /// and at once after a sample so far away, but not during a change of scale. Allocates nothing,
   /// except with ScalingKind::full.
   const AxisScaling* next();
 
@@ -77,6 +82,9 @@ class ScaleTracker {
  private:
   enum class Move : std::uint8_t { none, coming, adopted };
 
+  bool far(double y) const;
+  void see(std::span<const double> x);
+  void see(const InputScaling& scaling);
   bool measure();
   bool outgrown(const AxisScaling& scaling) const;
   bool counts() const { return !given_ && (!scaling_ || track_ > 0.0); }
@@ -90,15 +98,17 @@ class ScaleTracker {
   Moments target_moments_;
   Moments term_moments_;
   std::vector<double> term_values_;  ///< scratch
+  std::vector<double> largest_;      ///< magnitude of each input in samples that were not far away
   std::int64_t observed_ = 0;
-  bool far_ = false;  ///< the last sample was implausible
+  bool far_ = false;  ///< the last sample was more than 10 standard deviations away
   std::optional<AxisScaling> scaling_;
   AxisScaling next_;  ///< the next scale; after adopt(): the previous
   Move move_ = Move::none;
 };
 
 /// Which held-back samples are plausible: no value lies ten times as far from the median as the 5th
-/// or 95th percentile. Allocates.
+/// or 95th percentile; no input's value has three times the 95th percentile of magnitudes besides.
+/// Allocates.
 std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs);
 
 }  // namespace kelpie

@@ -40,9 +40,10 @@ class Scaled : public OnlineRegressor {
   const AxisScaling* scaling() const { return scale_.scaling(); }
   const TermSet& terms() const { return scale_.terms(); }
 
-  /// Whether inputs, or a sample, are plausible (ScaleTracker). Require scaling().
-  bool plausible(std::span<const double> x) const { return scale_.plausible(x); }
+  /// Whether a sample is plausible, and whether inputs are far away (ScaleTracker). Require
+  /// scaling().
   bool plausible(std::span<const double> x, double y) const { return scale_.plausible(x, y); }
+  bool far(std::span<const double> x) const { return scale_.far(x); }
 
   /// The scale is to suit further samples, which count as much as all samples so far: learns the
   /// scale alone. Requires scaling(). Allocates nothing.

@@ -49,6 +49,9 @@ inline constexpr struct ModelTuning {
     std::size_t remembered = 1000;  ///< samples; later samples fade earlier ones; by hand
     std::size_t assumed = 250;      ///< samples behind the scale of a trained model; by hand
     double far = 10.0;              ///< standard deviations of an implausible sample; by hand
+    double beyond = 3.0;            ///< largest magnitudes of an implausible sample: a command at
+                                    ///< a third of its range may take the whole
+    double extreme = 3.0;           ///< standard deviations: largest magnitude of a given scale
     std::int64_t held_look = 16;    ///< held-back samples between two looks for a scale; by hand
     std::size_t held_slice = 8;     ///< held-back samples learned per update; by hand
   } scale;
@@ -70,6 +73,7 @@ inline constexpr struct ModelTuning {
     double young_s = 90.0;   ///< s of looks after the first sample
     double confirmed_young_s = 60.0;  ///< s of looks after a candidate took over
     double tiny = 0.12;               ///< standard deviations of the later half: a scale too large
+    double near_zero = 0.36;          ///< standard deviations from 0, all of this half: by hand
     double alike = 5.0;           ///< standard deviations of the later half: earlier samples alike
     double recent = 0.12;         ///< rate of the share of implausible samples, per sample
     double company = 0.25;        ///< this share, three in succession, makes all samples doubtful

@@ -143,6 +143,33 @@ TEST(GuardedAxis, AVehicleThatSetsOffAfterALongRestIsBelievedWithinTenSeconds) {
   EXPECT_GT(worst_r2(model, drive, kRest, 4000), 0.95);
 }
 
+// A ship's orders are held for minutes. Of the first steps every one is far beyond the deviation
+// so far, and in the minutes between the axis learns next to nothing.
+TEST(GuardedAxis, CommandsHeldForMinutesAreNoGarbage) {
+  RandomStream random(7, "held");
+  Drive drive;
+  drive.inputs = {"u", "n1", "n2", "n3"};
+  drive.targets = {"udot", "rdot"};
+  std::array<double, 3> order{90.0, -60.0, 75.0};
+  double speed = 0.0;
+  for (std::size_t i = 0; i < 9000; ++i) {
+    if (i % 200 == 0) {
+      order[i / 200 % 3] = (random.uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0) * random.uniform(40, 150);
+    }
+    const double thrust = 1e-6 * (order[0] * std::abs(order[0]) + order[1] * std::abs(order[1]));
+    const double turn = 1e-6 * order[2] * std::abs(order[2]);
+    const double surge = thrust - 0.01 * speed;
+    speed += kStepS * surge;
+    drive.x.push_back({speed + 1e-3 * random.normal(), order[0], order[1], order[2]});
+    drive.y.push_back(
+        {surge + 1e-4 * random.normal(), turn - 2e-3 * speed + 1e-4 * random.normal()});
+  }
+  DynamicsModel model = model_of(drive);
+  learn(model, drive, 0, 5000);
+  EXPECT_LT(model.axis(0).status().tally.implausible, 50);
+  EXPECT_GT(worst_r2(model, drive, 5000, 9000), 0.95);
+}
+
 TEST(GuardedAxis, AStateOnProbationIsSavedWhole) {
   Drive drive = testing::drive(3, 1200);
   put_garbage(drive, 600, 100, 1e4, Where::both);

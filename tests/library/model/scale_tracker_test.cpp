@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -92,6 +93,22 @@ TEST_F(ScaleTrackerTest, AbsurdSamplesAreNotBelieved) {
     for (int i = 0; i < 5; ++i) {
       EXPECT_TRUE(scale.plausible(usual, 5.02));
     }
+  }
+}
+
+// Its standard deviation says nothing of its next step.
+TEST_F(ScaleTrackerTest, ACommandThatWasHeldMayMove) {
+  ScaleTracker scale = tracker();
+  for (int i = 0; i < 200; ++i) {
+    scale.observe(std::array{0.1 * std::sin(0.3 * i), 40.0 + 1e-3 * std::cos(0.7 * i)},
+                  std::sin(0.1 * i));
+  }
+  adopt_next(scale);
+  EXPECT_TRUE(scale.plausible(std::array{0.0, -100.0}, 0.5));
+  EXPECT_TRUE(scale.far(std::array{0.0, -100.0}));
+  for (int i = 0; i < 20; ++i) {  // garbage does not widen what is plausible
+    EXPECT_FALSE(scale.plausible(std::array{0.0, 125.0}, 0.5));
+    scale.observe(std::array{0.0, 110.0}, 0.5);
   }
 }
 
