@@ -11,6 +11,11 @@ namespace kelpie::live {
 
 RowCheck::RowCheck(const StreamPlan& plan, std::string states)
     : states_(std::move(states)),
+      is_idle_(std::ranges::all_of(plan.targets,
+                                   [&](const std::string& target) {
+                                     return std::ranges::count(plan.derived, target,
+                                                               &StreamPlan::Derived::name) > 0;
+                                   })),
       thinning_(static_cast<std::size_t>(
           std::max(1.0, std::ceil(plan.rate_hz / kTuning.checked_rate_hz)))) {
   rows_.input_names = plan.inputs;
@@ -21,7 +26,7 @@ RowCheck::RowCheck(const StreamPlan& plan, std::string states)
 }
 
 std::vector<log::Mistake> RowCheck::take(const Row& row) {
-  if (passed_++ % thinning_ != 0) {
+  if (is_idle_ || passed_++ % thinning_ != 0) {
     return {};
   }
   rows_.inputs.insert(rows_.inputs.end(), row.x.begin(), row.x.end());

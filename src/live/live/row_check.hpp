@@ -13,7 +13,8 @@
 namespace kelpie::live {
 
 /// Checks the rows of a live run by the rules for logs (log::target_mistakes), two minutes of rows
-/// at a time, thinned to at most 50 Hz. For one thread. Memory: the rows of two minutes.
+/// at a time, thinned to at most 50 Hz. A plan whose targets are all derived from velocities has
+/// nothing to check. For one thread. Memory: the rows of two minutes.
 class RowCheck {
  public:
   /// `states`: the setting of this name.
@@ -28,6 +29,7 @@ class RowCheck {
 
  private:
   std::string states_;
+  bool is_idle_;          // nothing to check
   std::size_t thinning_;  // of so many rows, one is taken
   std::size_t due_;       // rows of a check
   std::size_t passed_ = 0;

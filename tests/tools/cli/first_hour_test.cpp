@@ -188,5 +188,16 @@ TEST_F(FirstHour, ABagOfUnknownTypesNamesTheOptionForThem) {
       run("learn '" + bag.string() + "' --msg-dir " KELPIE_SOURCE_DIR "/examples/msg --out out"));
 }
 
+// A draft that cannot be is no message about a file that nobody wrote.
+TEST_F(FirstHour, ALogTooSlowForAccelerationsSaysSo) {
+  std::string text = "time,w,pitch,pump\n";
+  for (int i = 0; i < 300; ++i) {
+    text += std::to_string(18 * i) + "," + std::to_string(std::sin(0.3 * i)) + "," +
+            std::to_string(std::cos(0.2 * i)) + "," + std::to_string(i % 17) + "\n";
+  }
+  write("glider.csv", text);
+  testing::expect_refused(run("learn glider.csv"), "velocities come every 18 s, too slowly");
+}
+
 }  // namespace
 }  // namespace kelpie::first_hour_test
