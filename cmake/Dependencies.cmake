@@ -3,6 +3,7 @@
 
 # The library
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json 3.11 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HWY IMPORTED_TARGET libhwy>=1.0)
 if(NOT HWY_FOUND)
@@ -24,7 +25,6 @@ endmacro()
 if(KELPIE_BUILD_LOGS)
   find_package(fmt REQUIRED)
   find_package(tomlplusplus REQUIRED)
-  find_package(nlohmann_json 3.11 REQUIRED)
   find_package(yaml-cpp REQUIRED)
   find_package(SQLite3 REQUIRED)
   find_package(ZLIB REQUIRED)

@@ -92,7 +92,7 @@ Claim transfer(const StreamStudy& study) {
     }
   }
   claim.finding = by_count(fine, pairs);
-  claim.measured = pairs == 0 ? "only one configuration is public"
+  claim.measured = pairs == 0 ? "the log holds one configuration only"
                               : fmt::format("lower by {} to {} than that configuration's own model",
                                             chart::decimal(least), chart::decimal(most));
   return claim;

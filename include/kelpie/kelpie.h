@@ -11,8 +11,8 @@ extern "C" {
 
 /**
  * @file
- * kelpie::DynamicsModel for C and for languages that call C. A program in C links the library
- * kelpie, Highway and the standard library of C++ (docs/install.md).
+ * kelpie::DynamicsModel, SharedModel and TrainedModel for C and for languages that call C. A
+ * program in C links the library kelpie, Highway and the standard library of C++ (docs/install.md).
  *
  * Names are UTF-8, times in seconds, all other numbers in the units of the log. Functions that can
  * fail return a kelpie_status; without KELPIE_OK, outputs keep their values and
@@ -22,8 +22,8 @@ extern "C" {
  * such an x is NaN with a novelty of 1.
  *
  * Threads: several threads may predict with one model at a time; an update needs the model alone,
- * and any other call during an update is KELPIE_BAD_INPUT. Only kelpie_free(), names and counts are
- * not guarded.
+ * and any other call during an update is KELPIE_BAD_INPUT. With a kelpie_shared one thread learns
+ * while others predict. Only functions that free, names and counts are not guarded.
  */
 
 /** How a call ended; the numbers equal the exit codes of the commands. */
@@ -139,6 +139,129 @@ void kelpie_free_bytes(unsigned char* bytes); /**< Frees bytes of kelpie_save(),
  *  (to rounding on a machine with other vector instructions). Bytes that are cut short, damaged or
  *  of another version are KELPIE_BAD_INPUT. */
 kelpie_status kelpie_load(const unsigned char* bytes, size_t size, kelpie_model** model);
+
+/* Changes of the vehicle with their causes (docs/diagnosis.md) */
+
+/** A possible cause of a change, with one number as its size. */
+typedef enum kelpie_cause_kind {
+  KELPIE_THRUSTER = 0,     /**< loss of thrust; size: remaining share of the thrust, 1: unchanged */
+  KELPIE_DRAG = 1,         /**< damping of a target; size: factor on the damping */
+  KELPIE_LOAD = 2,         /**< carried or dropped; size: factor on the inertia along x */
+  KELPIE_FORCE = 3,        /**< constant in the body; size: acceleration of a target, in its unit */
+  KELPIE_SENSOR_SCALE = 4, /**< scale error of a velocity; size: reading over truth */
+  KELPIE_SENSOR_BIAS = 5,  /**< offset of a velocity; size: in its unit */
+  KELPIE_FROZEN = 6        /**< constant reading of a velocity; size: the reading */
+} kelpie_cause_kind;
+
+/** The state of the explanation of a change. */
+typedef enum kelpie_finding_state {
+  KELPIE_LOOKING = 0,    /**< a change is certain, its cause is not known yet */
+  KELPIE_NAMED = 1,      /**< one cause explains the change, or two causes together */
+  KELPIE_AMBIGUOUS = 2,  /**< two candidates explain the change nearly as well */
+  KELPIE_UNEXPLAINED = 3 /**< no known cause explains the change */
+} kelpie_finding_state;
+
+/** A cause with a 90 % interval of its size. */
+typedef struct kelpie_cause {
+  int32_t kind;  /**< a kelpie_cause_kind */
+  int32_t place; /**< number of the input (thruster, sensor) or target (drag, force); load: 0 */
+  double size;   /**< best estimate */
+  double lower;  /**< lower end of the interval */
+  double upper;  /**< upper end */
+} kelpie_cause;
+
+/** A change of the vehicle and its explanation; times as given to kelpie_update() [s]. */
+typedef struct kelpie_finding {
+  double since_s;         /**< when the change began */
+  double found_s;         /**< when the change was detected */
+  double told_s;          /**< when `state` changed last */
+  int32_t state;          /**< a kelpie_finding_state */
+  int32_t settled;        /**< 1: the explanation is final */
+  int32_t count;          /**< causes: 1 or 2; 0 without a name */
+  int32_t reserved;       /**< 0 */
+  kelpie_cause causes[2]; /**< the first `count` are valid */
+  kelpie_cause rival;     /**< of an ambiguous change: the second candidate */
+} kelpie_finding;
+
+/** The most findings that a model keeps. */
+enum { KELPIE_MOST_FINDINGS = 64 };
+
+/** The last findings, the oldest first: writes the first `room` of them, and how many there are to
+ *  `count`. None where the model knows no equations of motion (docs/diagnosis.md). `findings` may
+ * be null without room. Allocates. */
+kelpie_status kelpie_findings(const kelpie_model* model, kelpie_finding* findings, size_t room,
+                              size_t* count);
+
+/** A finding in words, such as "th2 gives 48 % of its thrust (41 to 55 %)", cut to `size` bytes
+ * with the final 0. `i` counts the findings from 0. Allocates. */
+kelpie_status kelpie_finding_text(const kelpie_model* model, size_t i, char* text, size_t size);
+
+/* A model that one thread teaches while others predict (kelpie::SharedModel) */
+
+/** A model and its published snapshots. */
+typedef struct kelpie_shared kelpie_shared;
+
+/** Takes over a model: from KELPIE_OK on, `model` is freed with the result, by
+ *  kelpie_free_shared(). Allocates all memory. */
+kelpie_status kelpie_share(kelpie_model* model, kelpie_shared** shared);
+void kelpie_free_shared(kelpie_shared* shared); /**< Frees model and snapshots; null: nothing. */
+
+/** The model within, for the teaching thread between two updates: names, kelpie_save(),
+ *  kelpie_findings(). Requires a shared model. */
+const kelpie_model* kelpie_shared_model(const kelpie_shared* shared);
+
+/** kelpie_update(), then a new snapshot. For one thread at a time. */
+kelpie_status kelpie_shared_update(kelpie_shared* shared, const double* x, size_t inputs,
+                                   const double* y, size_t targets, double t,
+                                   kelpie_decision* decisions);
+
+/** kelpie_assess() with the latest snapshot, from any thread, at any time: waits for nobody and
+ *  allocates nothing. `snapshot`: null, or room for the number of the snapshot, 1, 2, 3 …; 0 before
+ *  the first, and then `y` keeps its values. */
+kelpie_status kelpie_shared_assess(const kelpie_shared* shared, const double* x, size_t inputs,
+                                   kelpie_prediction* y, size_t targets, double ahead_s,
+                                   int64_t* snapshot);
+
+/** kelpie_predict_with_jacobian() with the latest snapshot, likewise. */
+kelpie_status kelpie_shared_predict_with_jacobian(const kelpie_shared* shared, const double* x,
+                                                  size_t inputs, double* y, size_t targets,
+                                                  double* jacobian, int64_t* snapshot);
+
+/* A model.json: a model that no longer learns (kelpie::TrainedModel) */
+
+/** A model as `kelpie learn` and `kelpie live` write it. */
+typedef struct kelpie_trained kelpie_trained;
+
+/** Reads the text of a model.json of `size` bytes (docs/model.md); a program reads the file itself.
+ *  Other texts are KELPIE_BAD_INPUT, and the message names the key. To be freed by
+ *  kelpie_free_trained(). Allocates. */
+kelpie_status kelpie_read_trained(const char* json, size_t size, kelpie_trained** model);
+void kelpie_free_trained(kelpie_trained* model); /**< Frees a model; null does nothing. */
+
+size_t kelpie_trained_input_count(const kelpie_trained* model);  /**< Requires a model. */
+size_t kelpie_trained_target_count(const kelpie_trained* model); /**< Requires a model. */
+/** The name of a column, counted from 0; null beyond the last. Valid as long as the model. */
+const char* kelpie_trained_input_name(const kelpie_trained* model, size_t i);
+const char* kelpie_trained_target_name(const kelpie_trained* model, size_t i); /**< Of a target. */
+
+/** How commands were aligned before the model saw them, in words, such as "commands are taken 0.5 s
+ *  later"; "" where commands are taken as they stand. Predictions take aligned commands
+ *  (docs/model.md). Valid as long as the model. */
+const char* kelpie_trained_alignment(const kelpie_trained* model);
+
+/** Predicts all targets at x, to the last bit as the program that wrote the model. Allocates
+ *  nothing. */
+kelpie_status kelpie_trained_predict(const kelpie_trained* model, const double* x, size_t inputs,
+                                     double* y, size_t targets);
+
+/** Predictions with interval and novelty; `disturbance` is 0. Allocates nothing. */
+kelpie_status kelpie_trained_assess(const kelpie_trained* model, const double* x, size_t inputs,
+                                    kelpie_prediction* y, size_t targets);
+
+/** Predictions with derivatives, as kelpie_predict_with_jacobian(). Allocates nothing. */
+kelpie_status kelpie_trained_predict_with_jacobian(const kelpie_trained* model, const double* x,
+                                                   size_t inputs, double* y, size_t targets,
+                                                   double* jacobian);
 
 #ifdef __cplusplus
 }

@@ -63,8 +63,8 @@ const Building kLive{
     {"autopilot", {"live", "log", "bag", "mavlink", "file"}},
     {"web", {"live", "report", "study", "log", "chart", "file"}},
     {"console",
-     {"web", "live", "ros", "autopilot", "cli", "report", "format", "study", "log", "bag", "chart",
-      "file"}},
+     {"web", "live", "ros", "autopilot", "cli", "report", "format", "study", "log", "bag",
+      "vehicle", "chart", "file"}},
 };
 const std::map<std::string, const Building*> kAroundTheLibrary{
     {"logs", &kLogs}, {"tools", &kTools}, {"live", &kLive}};

@@ -76,6 +76,17 @@ run cmake --build "$stage/cmake"
 refused 'requested version "99"' -DKELPIE_WANTED=99
 refused "no component 'pyhton'; this installation has: library, logs" -DKELPIE_COMPONENTS=pyhton
 
+# A model.json, read without the tools that wrote it
+run "$prefix/bin/kelpie" simulate "$prefix/share/kelpie/scenarios/small.toml" --out "$stage/small.csv"
+run "$prefix/bin/kelpie" learn "$stage/small.csv" --out "$stage/learned" --set buffer=60
+place=(0.4 0.02 -0.1 8 7 3)
+"$stage/cmake/model_json" "$stage/learned/model.json" "${place[@]}" | tee "$stage/model_by_cmake" |
+  grep -qE '^vdot -?[0-9]' || fail "no model.json is read in C++"
+if "$stage/cmake/model_json" "$stage/small.csv" "${place[@]}" 2>"$stage/log"; then
+  fail "a log is read as a model"
+fi
+grep -qF "small.csv: file: is not JSON" "$stage/log" || fail "no word of what is no model"
+
 # As a part of the other's project
 run consumer part -DKELPIE_SUBPROJECT="$source"
 
@@ -111,6 +122,11 @@ if command -v cc >/dev/null; then
   run cc -std=c99 -pedantic -Wall -Wextra -Werror $flags "$source/examples/07_in_c.c" \
     -o "$stage/in_c" $(pkg-config --cflags --libs --static kelpie)
   run "$source/examples/check_output.sh" "$source/examples/07_in_c.c" "$stage/in_c"
+  # shellcheck disable=SC2046,SC2086
+  run cc -std=c99 -pedantic -Wall -Wextra -Werror $flags "$source/tests/install/consumer/model_json.c" \
+    -o "$stage/model_in_c" $(pkg-config --cflags --libs --static kelpie)
+  "$stage/model_in_c" "$stage/learned/model.json" "${place[@]}" | cmp - "$stage/model_by_cmake" ||
+    fail "a model.json says something else in C"
 fi
 
 # Debian packages

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kelpie/learner/regressor.hpp"
@@ -56,5 +57,12 @@ struct TrainedModel {
   void predict_with_jacobian(std::span<const double> x, std::span<double> y,
                              std::span<double> jacobian) const;
 };
+
+/// Reads the text of a model.json (docs/model.md), as `kelpie learn`, `kelpie live` and Python
+/// write it; predictions are those of the program that wrote it, to the last bit. The library reads
+/// no files; `source` names the text in messages. Throws InputError (`source`, key) on invalid
+/// JSON, another format, a newer version, a missing key, inconsistent sizes, or impossible values.
+/// Allocates.
+TrainedModel read_trained_model(std::string_view text, const std::string& source = "model.json");
 
 }  // namespace kelpie

@@ -81,13 +81,15 @@ std::unique_ptr<kelpie_model> made(std::vector<std::string> inputs,
   for (const auto& [name, value] : settings.values()) {
     all += name + " = " + value + "\n";
   }
-  DynamicsModel model(inputs, targets, settings);
-  return std::make_unique<kelpie_model>(
-      kelpie_model{std::move(inputs), std::move(targets), std::move(all), std::move(model)});
+  auto model = std::make_unique<DynamicsModel>(inputs, targets, settings);
+  return std::make_unique<kelpie_model>(kelpie_model{.inputs = std::move(inputs),
+                                                     .targets = std::move(targets),
+                                                     .settings = std::move(all),
+                                                     .own = std::move(model)});
 }
 
 std::string saved(const kelpie_model& from) {
-  const std::string state = from.model.save();
+  const std::string state = from.model().save();
   const SavedFront front{from.inputs, from.targets, from.settings, state.size(),
                          checksum_of(state)};
   return front.bytes() + state;
@@ -103,7 +105,7 @@ std::unique_ptr<kelpie_model> loaded(std::string_view bytes) {
               std::to_string(front.state_bytes));
   require(checksum_of(state) == front.checksum, "bytes", "are damaged: their checksum doesn't fit");
   auto model = made(std::move(front.inputs), std::move(front.targets), front.settings);
-  model->model = DynamicsModel::resume(std::move(model->model), state);
+  *model->own = DynamicsModel::resume(std::move(*model->own), state);
   return model;
 }
 

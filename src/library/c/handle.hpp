@@ -8,13 +8,28 @@
 
 #include "kelpie/kelpie.h"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/shared_model.hpp"
+#include "kelpie/model/trained_model.hpp"
 
-/// The object behind a handle of C.
+/// The objects behind the handles of C.
 struct kelpie_model {
   std::vector<std::string> inputs;
   std::vector<std::string> targets;
   std::string settings;  ///< all settings, in the form of kelpie_create()
-  kelpie::DynamicsModel model;
+  std::unique_ptr<kelpie::DynamicsModel> own;
+  std::unique_ptr<kelpie::SharedModel> shared{};  ///< in place of `own`
+
+  const kelpie::DynamicsModel& model() const { return shared ? shared->model() : *own; }
+};
+
+struct kelpie_shared {
+  std::unique_ptr<kelpie_model> model;  ///< with `shared`
+};
+
+struct kelpie_trained {
+  kelpie::TrainedModel model;
+  std::vector<std::string> targets;
+  std::string alignment;
 };
 
 namespace kelpie {

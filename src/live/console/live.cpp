@@ -9,9 +9,11 @@
 
 #include "bag/open_bag.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/log_options.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "console/commands.hpp"
+#include "console/demo.hpp"
 #include "console/live_console.hpp"
 #include "console/live_signals.hpp"
 #include "console/live_transport.hpp"
@@ -26,14 +28,23 @@
 #include "live/plotjuggler.hpp"
 #include "live/recorder.hpp"
 #include "live/replay.hpp"
+#include "log/log_config.hpp"
+#include "log/read_log.hpp"
 
 namespace kelpie::cli {
 namespace {
 
+constexpr const char* kDemoPage = "8080";
+constexpr const char* kDemoFolder = "out/demo";
+constexpr double kShortestDemoS = 20.0;
+constexpr double kLongestDemoS = 86'400.0;
+
 struct LiveArguments {
   std::string config;
   std::vector<std::string> set;
-  log::LogSource replay;
+  LogOptions log;  // to be replayed
+  bool demo = false;
+  double duration_s = 600.0;  // of the demonstration
   std::string speed = "1";
   std::string out;
   std::string record;
@@ -45,23 +56,51 @@ struct LiveArguments {
   bool check = false;
 };
 
-// The file's, with the options over it.
-live::Configuration configuration_of(const LiveArguments& options) {
-  if (options.config.empty() && options.replay.path.empty()) {
+// A table, whose rows are read as `kelpie learn` reads them.
+live::Configuration rows_configuration(const LiveArguments& options) {
+  const log::LogConfig config = log::read_log_config(options.config);
+  return live::rows_configuration(
+      new_dataset(open_log(options.log.source, config, options.log.over(config.roles))),
+      options.config, options.set);
+}
+
+live::Configuration read_configuration(const LiveArguments& options) {
+  const log::LogSource& replay = options.log.source;
+  if (options.demo) {
+    return live::rows_configuration(demo_rows(options.duration_s), options.config, options.set);
+  }
+  if (!replay.path.empty() && !bag::is_bag(replay.path)) {
+    return rows_configuration(options);
+  }
+  if (options.log.has_columns()) {
+    throw InputError("--inputs, --targets, --ignore, --time, --rate, --units",
+                     "say what the columns of a CSV file are; [log] of --config says what "
+                     "messages mean");
+  }
+  if (options.config.empty() && replay.path.empty()) {
     throw InputError(
         "--config",
         "is missing: what the messages of a connection mean, for which `kelpie inspect "
-        "LOG --template` writes a draft; a recording needs none: --replay LOG");
+        "LOG --template` writes a draft; a recording needs none: --replay LOG; --demo shows a "
+        "simulated vehicle");
   }
   std::string summary;
-  live::Configuration configuration =
-      options.config.empty() ? live::draft_configuration(options.replay, options.set, summary)
-                             : live::read_configuration(options.config, options.set);
+  live::Configuration configuration = options.config.empty()
+                                          ? live::draft_configuration(replay, options.set, summary)
+                                          : live::read_configuration(options.config, options.set);
   say("{}", summary);
+  return configuration;
+}
+
+// The file's, with the options over it.
+live::Configuration configuration_of(const LiveArguments& options) {
+  live::Configuration configuration = read_configuration(options);
   live::LiveSettings& settings = configuration.live;
-  if (!options.replay.definitions.empty()) {
-    configuration.log.messages = options.replay.definitions;
+  if (!options.log.source.definitions.empty()) {
+    configuration.log.messages = options.log.source.definitions;
   }
+  settings.out = options.demo ? kDemoFolder : settings.out;
+  settings.page = options.demo && has_pages() ? kDemoPage : settings.page;
   settings.out = options.out.empty() ? settings.out : options.out;
   settings.record = options.record.empty() ? settings.record : options.record;
   if (!options.plotjuggler.empty()) {
@@ -206,7 +245,7 @@ class LiveRun {
 
 std::optional<live::SavedRun> saved_run(const LiveArguments& options,
                                         const live::Configuration& configuration) {
-  if (options.fresh) {
+  if (options.fresh || options.demo) {
     return std::nullopt;
   }
   std::optional<live::SavedRun> saved =
@@ -236,10 +275,10 @@ void live_command(const LiveArguments& options) {
   const file::OutFolder folder =
       take_out_folder(configuration.live.out,
                       {"model.json", format::kCheckpointName, format::kPreviousCheckpointName},
-                      {options.replay.path, options.config});
+                      {options.log.source.path, options.config});
   std::optional<live::SavedRun> saved = saved_run(options, configuration);
   const std::unique_ptr<live::Transport> transport =
-      transport_of(options.replay, options.speed, configuration, saved);
+      transport_of(options.log.source, options.speed, configuration, saved);
   if (options.check) {
     live::Outputs nobody;
     outputs_of(configuration);
@@ -267,9 +306,8 @@ void add_live(CLI::App& app) {
            "TOML file with [log], [live] and settings (docs/live.md); without it a recording is "
            "read as `kelpie learn` reads one");
   add_set(command, options->set);
-  CLI::Option* const replay =
-      add_file(command, "--replay", options->replay.path,
-               "recording to replay, in place of a connection: " + bag::recording_formats());
+  CLI::Option* const replay = add_file(command, "--replay", options->log.source.path,
+                                       "log to replay, in place of a connection: " + log_formats());
   command
       ->add_option_function<std::string>(
           "--from",
@@ -277,12 +315,24 @@ void add_live(CLI::App& app) {
             warn(
                 "kelpie: --from of `kelpie live` is called --replay; a later version takes --from "
                 "for a model to go on from, as `kelpie learn` does\n");
-            options->replay.path = file;
+            options->log.source.path = file;
           },
           "--replay, as it was called")
       ->group("")
       ->excludes(replay);
-  add_folder(command, "--msg-dir", options->replay.definitions,
+  CLI::Option* const demo = command->add_flag(
+      "--demo", options->demo,
+      "replay a simulated vehicle, one thruster of which loses 40 % of its thrust half-way; with a "
+      "page at port 8080 and the folder out/demo, begun anew each time");
+  demo->excludes(replay);
+  command
+      ->add_option("--duration", options->duration_s,
+                   "length of the demonstration, by the vehicle's clock [s]")
+      ->check(within(kShortestDemoS, kLongestDemoS))
+      ->capture_default_str()
+      ->needs(demo);
+  options->log.add_columns_to(*command);
+  add_folder(command, "--msg-dir", options->log.source.definitions,
              "folder of .msg files, for types that the recording doesn't define");
   command
       ->add_option("--speed", options->speed,
@@ -308,7 +358,7 @@ void add_live(CLI::App& app) {
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
   add_examples(command, "live --config examples/bluerov.toml --page 8080",
-               "live --replay dive.bag --speed 10 --page 8080");
+               "live --demo --speed 10");
 }
 
 }  // namespace kelpie::cli

@@ -49,7 +49,7 @@ std::unique_ptr<live::Transport> topics(const live::Configuration& configuration
 std::unique_ptr<live::Transport> transport_of(const log::LogSource& from, const std::string& speed,
                                               const live::Configuration& configuration,
                                               const std::optional<live::SavedRun>& saved) {
-  if (!from.path.empty()) {
+  if (!from.path.empty() || configuration.rows) {
     return recording(from, speed, configuration, saved);
   }
   if (const auto& mavlink = configuration.live.mavlink) {
@@ -73,6 +73,14 @@ bool connects_alike(const live::Configuration& now, const live::Configuration& n
   return ros::read_node_settings(now.live.dds) == ros::read_node_settings(next.live.dds);
 #else
   return true;
+#endif
+}
+
+bool has_pages() {
+#ifdef KELPIE_WITH_WEB
+  return true;
+#else
+  return false;
 #endif
 }
 

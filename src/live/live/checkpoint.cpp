@@ -59,6 +59,7 @@ void Progress::visit(Archive& archive) {
   archive.whole(rows);
   archive.whole(learned);
   archive.flag(is_paused);
+  archive.text(doubt);
   archive.part("clock", clock);
 }
 

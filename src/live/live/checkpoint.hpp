@@ -39,6 +39,7 @@ struct Progress {
   std::size_t rows = 0;          ///< complete rows of this recording
   std::size_t learned = 0;       ///< samples since the model began
   bool is_paused = false;        ///< learning is frozen by request
+  std::string doubt{};           ///< why the model is doubtful; empty: no reason
   LearningClock clock{};
 
   void visit(Archive& archive);  ///< core/archive.hpp

@@ -7,14 +7,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "bag/topic_columns.hpp"
+#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/stream/sample_stream.hpp"
+#include "live/row_reader.hpp"
 #include "live/tuning.hpp"
 #include "log/draft.hpp"
 
@@ -164,9 +168,9 @@ std::string names_of(const std::array<std::string, 3>& columns) {
 }
 
 Configuration configuration_of(const file::TomlNode& root, const std::string& file,
-                               const std::vector<std::string>& set) {
+                               log::LogConfig log, const std::vector<std::string>& set) {
   Configuration configuration{
-      .file = file, .log = log::read_log_config(root), .plan = {}, .settings = {}, .live = {}};
+      .file = file, .log = std::move(log), .plan = {}, .settings = {}, .live = {}};
   configuration.plan = plan_of(configuration.log);
   configuration.settings = format::make_settings(format::read_settings_file(root), set,
                                                  configuration.plan.targets.size());
@@ -234,6 +238,9 @@ Fields Configuration::identity() const {
                       plan.lever_arm->arm_m[1], plan.lever_arm->arm_m[2]);
   }
   fields.emplace_back("log.lever_arm", arm);
+  for (const auto& [column, unit] : rows ? rows->units : std::map<std::string, Unit>{}) {
+    fields.emplace_back("log.units." + column, unit.text());
+  }
   return fields;
 }
 
@@ -249,7 +256,8 @@ std::vector<std::string> Configuration::columns() const {
 
 Configuration read_configuration(const std::filesystem::path& file,
                                  const std::vector<std::string>& set) {
-  return configuration_of(file::TomlNode::read(file), file.string(), set);
+  const file::TomlNode root = file::TomlNode::read(file);
+  return configuration_of(root, file.string(), log::read_log_config(root), set);
 }
 
 Configuration draft_configuration(const log::LogSource& source, const std::vector<std::string>& set,
@@ -260,7 +268,37 @@ Configuration draft_configuration(const log::LogSource& source, const std::vecto
   }
   summary = draft.summary(source.path);
   const std::string name = "the draft for " + source.path;
-  return configuration_of(file::TomlNode::parse(draft.toml, name), name, set);
+  const file::TomlNode root = file::TomlNode::parse(draft.toml, name);
+  return configuration_of(root, name, log::read_log_config(root), set);
+}
+
+namespace {
+
+// A rate measured from time steps is off by rounding, and times of rows with it.
+double whole_rate(double rate_hz) {
+  constexpr double kMicrohertz = 1e6;
+  const double rounded = std::round(kMicrohertz * rate_hz) / kMicrohertz;
+  return std::abs(rounded - rate_hz) < 1e-9 * rate_hz ? rounded : rate_hz;
+}
+
+}  // namespace
+
+Configuration rows_configuration(log::Dataset rows, const std::filesystem::path& file,
+                                 const std::vector<std::string>& set) {
+  const file::TomlNode root =
+      file.empty() ? file::TomlNode::parse("", rows.source) : file::TomlNode::read(file);
+  log::LogConfig log;
+  log.source = rows.source;
+  log.roles = {.inputs = rows.input_names,
+               .targets = rows.target_names,
+               .rate_hz = whole_rate(rows.rate_hz),
+               .actuators = rows.actuators};
+  log.plan.sources = RowReader::sources_of(rows);
+  log.plan.gap_s = std::max(log.plan.gap_s, kLongestStep / rows.rate_hz);
+  Configuration configuration =
+      configuration_of(root, file.empty() ? rows.source : file.string(), std::move(log), set);
+  configuration.rows = std::make_shared<const log::Dataset>(std::move(rows));
+  return configuration;
 }
 
 }  // namespace kelpie::live

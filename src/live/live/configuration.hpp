@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "file/toml.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/stream/stream_plan.hpp"
+#include "log/dataset.hpp"
 #include "log/read_log.hpp"
 
 namespace kelpie::live {
@@ -55,6 +57,7 @@ struct Configuration {
   StreamPlan plan;  ///< valid, with sources from topics
   ModelSettings settings;
   LiveSettings live;
+  std::shared_ptr<const log::Dataset> rows{};  ///< of a table to be replayed; null: messages
 
   /// Everything besides the settings that a checkpoint must match to be resumed. Keys as in the
   /// file ("log.rate").
@@ -73,5 +76,11 @@ Configuration read_configuration(const std::filesystem::path& file,
 /// points open.
 Configuration draft_configuration(const log::LogSource& source, const std::vector<std::string>& set,
                                   std::string& summary);
+
+/// The configuration for replaying the rows of a table: inputs, targets and rate are those of the
+/// rows; settings and [live] come from `file`, where one is given. Throws as read_configuration()
+/// does.
+Configuration rows_configuration(log::Dataset rows, const std::filesystem::path& file,
+                                 const std::vector<std::string>& set);
 
 }  // namespace kelpie::live

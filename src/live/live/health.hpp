@@ -71,6 +71,7 @@ struct LearnerHealth {
   Alignment alignment{};
   std::vector<AxisHealth> axes{};
   std::string vehicle{};  ///< the last finding about the vehicle, in words; empty: none
+  std::string doubt{};    ///< why the model is doubtful (RowCheck), in words; empty: no reason
   std::vector<ThrusterHealth> thrusters{};
   double last_t_s = 0.0;        ///< of the last row
   double checkpoint_t_s = 0.0;  ///< of the last row in the newest checkpoint

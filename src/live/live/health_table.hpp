@@ -15,6 +15,9 @@ namespace kelpie::live {
 /// How an alert and an event call a change of the vehicle.
 inline constexpr std::string_view kVehicleChanged = "the vehicle has changed";
 
+/// How an alert and an event call a model that was learned from implausible targets.
+inline constexpr std::string_view kModelDoubtful = "the model is doubtful";
+
 /// Type of a field's value.
 enum class HealthKind : std::uint8_t { count, gauge, share, flag, text };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/seconds.hpp"
@@ -13,6 +14,7 @@
 #include "format/model_json.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "live/alignment.hpp"
+#include "live/health_table.hpp"
 #include "live/tuning.hpp"
 #include "study/alignment.hpp"
 
@@ -30,6 +32,7 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
                  rows_to_keep(configuration, recording),
                  study::known_actuators(configuration.log.roles.actuators)),
       progress_(saved ? saved->progress : Progress{}),
+      check_(configuration.plan, configuration.settings.shared.states),
       changes_(configuration.plan, model_->model().ready()),
       score_(configuration.plan),
       predictions_(configuration.plan.targets.size()),
@@ -100,11 +103,24 @@ void LiveLearner::align(const Row& row) {
   } else if (row.is_stuck) {
     ++rows_stuck_;
   } else {
+    doubt(check_.take(row));
     alignment_.push(row.x, row.y, row.t, to_learning());
     if (finds_alignment_ && alignment_.is_due()) {
       update_alignment(false);
     }
   }
+}
+
+// A vehicle under way keeps its model: the operator decides. The doubt lasts as long as the model.
+void LiveLearner::doubt(const std::vector<log::Mistake>& mistakes) {
+  if (mistakes.empty() || !progress_.doubt.empty()) {
+    return;
+  }
+  std::vector<std::string> texts;
+  std::ranges::transform(mistakes, std::back_inserter(texts), log::mistake_text);
+  progress_.doubt = join_text(texts, "; ");
+  output_.event(
+      fmt::format("at {:.1f} s: WARNING: {}: {}", last_t_s_, kModelDoubtful, progress_.doubt));
 }
 
 void LiveLearner::execute(Request request) {
@@ -124,6 +140,7 @@ void LiveLearner::execute(Request request) {
       break;
     case Request::reset:
       known_rows_ = 0;
+      progress_.doubt.clear();
       begin_anew();
       save();
       output_.event("the model begins anew");
@@ -209,6 +226,7 @@ void LiveLearner::finish() {
   if (progress_.is_paused) {
     return;
   }
+  doubt(check_.finish());
   known_rows_ = 0;  // those that wait haven't been learned, whatever the checkpoint has
   if (finds_alignment_ && progress_.recording != log::Reach{}) {
     update_alignment(true);
@@ -257,7 +275,8 @@ bool LiveLearner::write_model() const {
   }
   TrainedModel trained = model.trained();
   trained.alignment = alignment_.alignment();
-  file::write_file_whole(folder_ / "model.json", format::model_json(trained));
+  file::write_file_whole(folder_ / "model.json",
+                         format::model_json(trained, {}, {.doubt = progress_.doubt}));
   return true;
 }
 
@@ -293,6 +312,7 @@ void LiveLearner::refresh_health() {
   now.rows_paused = rows_paused_;
   now.alignment = alignment_.alignment();
   now.vehicle = changes_.vehicle();
+  now.doubt = progress_.doubt;
   now.last_t_s = last_t_s_;
   refreshed_ = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);

@@ -20,6 +20,7 @@
 #include "live/health.hpp"
 #include "live/output.hpp"
 #include "live/prediction_score.hpp"
+#include "live/row_check.hpp"
 #include "live/row_queue.hpp"
 
 namespace kelpie::live {
@@ -67,6 +68,7 @@ class LiveLearner {
   void save_all();
   void begin_anew();
   void align(const Row& row);
+  void doubt(const std::vector<log::Mistake>& mistakes);
   void learn_aligned(std::span<const double> x, std::span<const double> y, double t);
   auto to_learning() {
     return [this](auto x, auto y, double t) { learn_aligned(x, y, t); };
@@ -86,6 +88,7 @@ class LiveLearner {
   std::size_t rows_stuck_ = 0;
   std::size_t rows_paused_ = 0;
   bool is_stuck_ = false;
+  RowCheck check_;
   ChangeReporter changes_;
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;

@@ -9,6 +9,7 @@
 #include "bag/open_bag.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "live/row_reader.hpp"
 
 namespace kelpie::live {
 double parse_speed(const std::string& text) {
@@ -24,6 +25,11 @@ double parse_speed(const std::string& text) {
 
 Replay::Replay(const log::LogSource& source, const Configuration& configuration, double speed)
     : pace_(speed) {
+  if (configuration.rows) {
+    bag_ = std::make_unique<RowReader>(*configuration.rows);
+    reach_ = RowReader::reach_of(*configuration.rows);
+    return;
+  }
   if (!bag::is_bag(source.path)) {
     throw InputError({.file = source.path, .line = 0, .field = "--replay"},
                      "is no recording of messages; it takes " + bag::recording_formats());

@@ -20,8 +20,9 @@ double parse_speed(const std::string& text);
 /// Replays a recording: messages in stored order, at the times of their reception.
 class Replay final : public Transport {
  public:
-  /// Reads the recording once, for the checks of a log and for its reach; memory for the columns in
-  /// use. Throws InputError as log::read_log() does, and on a path without a bag.
+  /// Replays the rows of the configuration where there are some, else the recording, which is read
+  /// once for the checks of a log and for its reach; memory for the columns in use. Throws
+  /// InputError as log::read_log() does, and on a path without a bag.
   Replay(const log::LogSource& source, const Configuration& configuration, double speed);
 
   const std::vector<bag::Topic>& topics() const override { return bag_->topics(); }

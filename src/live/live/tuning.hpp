@@ -27,6 +27,11 @@ inline constexpr struct Tuning {
                                          ///< the watchdog sees a hang; docs/live.md
   double most_kept_rows = 1e6;           ///< of a recording, for the alignment: a day at 10 Hz
 
+  // Plausibility
+  double checked_s = 120.0;              ///< of rows in a check: 24 windows of 5 s; docs/live.md
+  double checked_rate_hz = 50.0;         ///< rows beyond tell a check no more
+  std::size_t least_checked_rows = 121;  ///< at low rates: 24 windows of 5 rows
+
   // Reports
   double least_pause_s = 0.1;    ///< between two checkpoints or reports of status; docs/limits.md
   double longest_pause_s = 1e6;  ///< 12 days

@@ -11,16 +11,16 @@
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
-namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-
 bool is_identifier(std::string_view word) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   return !word.empty() && is_letter(word.front()) && std::ranges::all_of(word, [&](char c) {
     return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
   });
 }
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
 
 std::string_view without_comment(std::string_view line) {
   return trimmed(line.substr(0, line.find_first_of("#\r")));

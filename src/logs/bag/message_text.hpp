@@ -10,6 +10,9 @@
 
 namespace kelpie::bag {
 
+/// Whether a word can be the name of a field: a letter, then letters, digits and underscores.
+bool is_identifier(std::string_view word);
+
 /// A line of a .msg file with a field.
 struct FieldLine {
   std::string type;  ///< "float64", "Pose" or "geometry_msgs/Pose"

@@ -14,7 +14,6 @@ inline constexpr struct Tuning {
   std::size_t free_unpacked = std::size_t{32} << 20U;    ///< unpacked bytes always accepted …
   std::size_t most_ratio = 100;                          ///< … and beyond, per packed byte
   int silence_ms = 5000;       ///< of a pipe, before a message says that the program waits
-  double largest = 1e100;      ///< number in JSON: a square, a million times, is finite still
   double largest_toml = 1e12;  ///< number in a configuration, in the unit of the key
 } kTuning{};
 

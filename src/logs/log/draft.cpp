@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/draft.hpp"
 
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "core/text.hpp"
 #include "file/toml.hpp"
@@ -39,6 +41,22 @@ Draft written(const DraftPlan& plan, const std::string& log, const std::string& 
           .open = plan.open};
 }
 
+// What is missing may be in topics that nobody can read: "/a, /b: pkg/Type: its definition …".
+std::vector<std::string> undecoded(const bag::BagReport& report) {
+  std::map<std::string, std::string> topics;  // by reason
+  for (const bag::TopicReport& topic : report.topics) {
+    if (!topic.not_decoded.empty()) {
+      std::string& names = topics[topic.not_decoded];
+      names += (names.empty() ? "" : ", ") + topic.name;
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [reason, names] : topics) {
+    lines.push_back(names + " cannot be read: " + reason);
+  }
+  return lines;
+}
+
 }  // namespace
 
 LogConfig Draft::config(const std::string& source) const {
@@ -63,7 +81,12 @@ std::string Draft::summary(const std::string& source) const {
 }
 
 Draft draft_of(const bag::BagReport& report, const LogSource& source) {
-  return written(plan_draft(report, ""), source.path, source.definitions);
+  DraftPlan plan = plan_draft(report, "");
+  if (!plan.open.empty()) {
+    const std::vector<std::string> lines = undecoded(report);
+    plan.open.insert(plan.open.end(), lines.begin(), lines.end());
+  }
+  return written(plan, source.path, source.definitions);
 }
 
 Draft draft_of(const Table& table) {

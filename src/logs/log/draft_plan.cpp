@@ -18,6 +18,7 @@
 #include "log/ardusub.hpp"
 #include "log/tuning.hpp"
 #include "motion/signal_names.hpp"
+#include "stream/tuning.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -133,6 +134,12 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
   }
   plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
   plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
+  if (plan.window_s > stream::kTuning.longest_window_s) {
+    plan.open.push_back(fmt::format(
+        "velocities come every {:.3g} s, too slowly for accelerations, which are slopes over six "
+        "samples and {:g} s at most; a column of measured accelerations can be named by --targets",
+        1.0 / rates.moving_hz, stream::kTuning.longest_window_s));
+  }
 }
 
 void choose_clock(const SignalRates& rates, DraftPlan& plan) {

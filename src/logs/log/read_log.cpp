@@ -15,6 +15,7 @@
 #include "log/dataset.hpp"
 #include "log/held_table.hpp"
 #include "log/signal.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -176,6 +177,30 @@ bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) 
   }
 }
 
+// Inputs that are pulses of servos, in whole µs to both sides of rest, rest at their middle unless
+// the user knows better.
+void add_neutral_pulses(const Table& table, Roles& roles) {
+  for (const std::string& input : roles.inputs) {
+    const auto found = std::ranges::find(table.names, input);
+    if (found == table.names.end() || roles.actuators.contains(input)) {
+      continue;
+    }
+    const std::vector<double>& values =
+        table.columns[static_cast<std::size_t>(found - table.names.begin())];
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    const bool is_whole = std::ranges::all_of(values, [&](double value) {
+      low = std::fmin(low, value);
+      high = std::fmax(high, value);
+      return !std::isfinite(value) || value == std::floor(value);
+    });
+    if (is_whole && are_servo_pulses(low, high) && low < kNeutralPulseUs &&
+        high > kNeutralPulseUs) {
+      roles.actuators[input] = {.neutral = kNeutralPulseUs};
+    }
+  }
+}
+
 // Whether the samples of a draft have all these columns.
 bool gives(const Draft& draft, const std::vector<std::string>& inputs) {
   if (!draft.is_complete()) {
@@ -244,7 +269,11 @@ std::unique_ptr<bag::MessageReader> LogSource::open_bag(const bag::RowTimes& tim
 }
 
 Dataset Log::dataset() const {
-  Dataset data = make_dataset(table, guess_roles(table, roles));
+  Roles all = guess_roles(table, roles);
+  if (sampling.sources.empty()) {  // a draft knows the pulses of messages
+    add_neutral_pulses(table, all);
+  }
+  Dataset data = make_dataset(table, all);
   if (!sampling.sources.empty()) {
     data.rate_hz = sampling.rate_hz;  // as asked for; stamps tell it only to rounding
   }

@@ -27,8 +27,9 @@ struct Log {
   std::map<std::string, std::string> units{};
   std::optional<Draft> draft{};  ///< the draft used without configuration
 
-  /// The data for a learner; missing roles are guessed from the names. Throws as guess_roles() and
-  /// make_dataset() do.
+  /// The data for a learner; missing roles are guessed from the names, and inputs of a table that
+  /// are pulses of servos, in whole µs to both sides of 1500, rest at 1500 unless an actuator is
+  /// given. Throws as guess_roles() and make_dataset() do.
   Dataset dataset() const;
 };
 

@@ -130,6 +130,7 @@ void run_identify(const IdentifyArguments& options) {
   file::write_files_whole(out.path(), files);
   Answer answer{.verdict = report::identification_verdict(found),
                 .tables = report::identification_table(found),
+                .document = options.answer.json ? format::parameters_json(found, frame) : "",
                 .files = {},
                 .next = {}};
   for (const auto& [name, content] : files) {
@@ -181,7 +182,7 @@ void add_identify(CLI::App& app) {
       ->type_name("{FLU,FRD}");
   add_seed(command, options->seed);
   add_out(command, options->out, "folder for the parameters and files of simulators");
-  options->answer.add_to(*command, "");
+  options->answer.add_to(*command, "the parameters as JSON");
   add_examples(command, "identify dive.csv --rate 4 --units th1=rev/s,th2=rev/s,th3=rev/s",
                "identify dive.bag --config vehicle.toml --mass 32.5 --frame FRD");
 }

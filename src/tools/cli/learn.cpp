@@ -193,22 +193,22 @@ format::ColumnUnits unit_texts(const log::Dataset& data) {
 // Returns whether a model is among the results.
 bool write_results(const fs::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model, const std::vector<format::LearnedLog>& learned,
-                   const std::string& draft, const format::ColumnUnits& units,
-                   const std::vector<report::NextStep>& next) {
+                   const PlannedLog& log, const std::vector<report::NextStep>& next) {
   file::FileSet files{{"result.json", format::result_json(result)},
                       {"report.html", report::report_html(result, next)},
                       {"model.json", std::nullopt}};
   if (model.ready()) {
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
-    const std::string text = format::model_json(trained, learned, units);
+    const std::string text =
+        format::model_json(trained, learned, {unit_texts(log.plan.data), log.doubt});
     warn_unless_readable("model.json", [&] {
       format::parse_model_json(text, "model.json");
       files["model.json"] = text;
     });
   }
-  if (!draft.empty()) {
-    files[kDraftName] = draft;
+  if (!log.draft.empty()) {
+    files[kDraftName] = log.draft;
   }
   file::write_files_whole(folder, files);
   return files["model.json"].has_value();
@@ -302,8 +302,7 @@ void learn(const LearnArguments& options) {
   }
   const bool has_model =
       write_results(folder.path(), result, model,
-                    result.interrupted ? std::vector<format::LearnedLog>{} : learned, log.draft,
-                    unit_texts(plan.data), next);
+                    result.interrupted ? std::vector<format::LearnedLog>{} : learned, log, next);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
   }

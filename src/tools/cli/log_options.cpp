@@ -41,30 +41,29 @@ void take_columns(const format::Origin& from, log::Roles& roles) {
 }
 
 // Throws InputError with those that are refused, unless these are accepted; says the others.
-void tell_mistakes(const std::string& source, const std::string& field,
-                   const std::vector<log::Mistake>& found, bool accepts) {
+// Returns those that were accepted.
+std::string tell_mistakes(const std::string& source, const std::string& field,
+                          const std::vector<log::Mistake>& found, bool accepts) {
   std::vector<std::string> refused;
   for (const log::Mistake& mistake : found) {
-    if (mistake.is_refused && !accepts) {
+    if (mistake.is_refused) {
       refused.push_back(log::mistake_text(mistake));
-    } else {
+    }
+    if (!mistake.is_refused || accepts) {
       warn("{}: {}\n", source, log::mistake_text(mistake));
     }
   }
-  if (!refused.empty()) {
+  if (!refused.empty() && !accepts) {
     throw InputError(
         {.file = source, .field = field},
         join_text(refused, "; ") + "; --accept implausible learns the log as it stands");
   }
+  return join_text(refused, "; ");
 }
 
 // The data of one log; `is_new`: no model wants all its inputs.
 log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new) {
-  if (is_new) {
-    warn("{}", log::left_out_text(opened.table, opened.roles));
-    opened.roles = log::without_constants(opened.table, std::move(opened.roles));
-  }
-  log::Dataset data = opened.dataset();
+  log::Dataset data = is_new ? new_dataset(std::move(opened)) : opened.dataset();
   tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
   return data;
 }
@@ -105,6 +104,12 @@ void check_terms(const ModelSettings& settings, const log::Dataset& data,
 
 }  // namespace
 
+log::Dataset new_dataset(log::Log opened) {
+  warn("{}", log::left_out_text(opened.table, opened.roles));
+  opened.roles = log::without_constants(opened.table, std::move(opened.roles));
+  return opened.dataset();
+}
+
 void add_split_option(CLI::App& command, std::string& split, const std::string& meaning) {
   command.add_option("--split", split, meaning)
       ->capture_default_str()
@@ -114,6 +119,17 @@ void add_split_option(CLI::App& command, std::string& split, const std::string& 
 void LogOptions::add_to(CLI::App& command) {
   add_bag_options(command, source, "log",
                   "the log: " + log_formats() + " (`kelpie inspect` says what is in it)");
+  add_columns_to(command);
+  command.add_option("--configuration", configuration,
+                     "column numbering the vehicle's configuration");
+}
+
+bool LogOptions::has_columns() const {
+  return !inputs.empty() || !targets.empty() || !ignored.empty() || !time.empty() ||
+         rate_hz != 0.0 || !units.empty();
+}
+
+void LogOptions::add_columns_to(CLI::App& command) {
   command.add_option("--inputs", inputs, "columns the model sees, separated by commas")
       ->delimiter(',');
   command.add_option("--targets", targets, "columns it predicts, separated by commas")
@@ -121,8 +137,6 @@ void LogOptions::add_to(CLI::App& command) {
   add_list(&command, "--ignore", ignored, "columns that are neither, separated by commas");
   add_clock_options(command, time, rate_hz);
   add_units_option(command, units);
-  command.add_option("--configuration", configuration,
-                     "column numbering the vehicle's configuration");
 }
 
 log::Roles LogOptions::over(const log::Roles& file) const {
@@ -191,8 +205,9 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
                       : format::make_settings(log.config, options.set, data.target_names.size());
   check_terms(settings, data, options.config);
   if (options.check_targets) {
-    tell_mistakes(data.source, "targets", log::target_mistakes(data, settings.shared.states),
-                  !options.accept.empty());
+    log.doubt =
+        tell_mistakes(data.source, "targets", log::target_mistakes(data, settings.shared.states),
+                      !options.accept.empty());
   }
   std::optional<AlignmentResult> known;
   if (from != nullptr && options.align == kAlignAuto) {
@@ -277,7 +292,8 @@ log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
   if (log.disarmed > 0) {
     say("left out: {} messages while the motors were disarmed (armed_only)\n", log.disarmed);
   }
-  say("{}", report::sampling_table(log.sampling));
+  say("{}",
+      is_brief() ? report::sampling_notes(log.sampling) : report::sampling_table(log.sampling));
   return log;
 }
 

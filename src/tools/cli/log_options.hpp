@@ -29,6 +29,10 @@ struct LogOptions {
   std::vector<std::string> units;  ///< column=unit
 
   void add_to(CLI::App& command);
+  /// The options of add_to() that say what the columns of a table are.
+  void add_columns_to(CLI::App& command);
+  /// Whether any option of add_columns_to() was given.
+  bool has_columns() const;
 
   /// These options over the roles of a configuration file. Throws InputError on a unit without
   /// column.
@@ -64,6 +68,7 @@ struct PlannedLog {
   std::vector<format::LearnedLog> learned;  ///< the logs with their held-out rows
   format::SettingsFile config;              ///< configuration file of the settings
   std::string draft{};                      ///< the guessed configuration of the log, or empty
+  std::string doubt{};                      ///< accepted mistakes of the targets, or empty
 };
 
 /// Reads the logs, splits their rows and aligns their commands. `from` is the model to continue,
@@ -72,6 +77,10 @@ struct PlannedLog {
 /// Throws as open_log() and study::plan_learning() do, and InputError (file) with the mistakes of a
 /// log (log/plausibility.hpp) unless the options accept an implausible log.
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from = nullptr);
+
+/// The rows of a log for a new model. Prints to stderr the columns left out of the inputs. Throws
+/// as Log::dataset() does.
+log::Dataset new_dataset(log::Log opened);
 
 /// The option --split; `meaning` is its purpose in this command.
 void add_split_option(CLI::App& command, std::string& split, const std::string& meaning);

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "cli/output.hpp"
 #include "core/text.hpp"
-#include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 
@@ -34,14 +34,22 @@ void add_model(CLI::App* command, const std::string& name, std::string& model) {
   add_file(command, name, model, "model.json of `kelpie learn`")->capture_default_str();
 }
 
-TrainedModel read_given_model(const std::string& model) {
+TrainedModel read_given_model(const std::string& model, format::ModelInfo* info) {
   std::error_code none;
   if (!std::filesystem::exists(model, none)) {
     throw InputError({.file = model, .line = 0, .field = {}},
                      "there is no such model; `kelpie learn` makes one, in " +
                          std::string(kLearnedModel) + " where no --out is given");
   }
-  return format::read_model(model);
+  format::ModelInfo read;
+  TrainedModel trained = format::read_model(model, &read);
+  if (!read.doubt.empty()) {
+    warn("{}: WARNING: the model is doubtful: {}\n", model, read.doubt);
+  }
+  if (info != nullptr) {
+    *info = std::move(read);
+  }
+  return trained;
 }
 
 void add_examples(CLI::App* command, const std::string& first, const std::string& second) {
@@ -70,6 +78,9 @@ void AnswerOptions::add_to(CLI::App& command, const std::string& document) {
 void AnswerOptions::begin() const {
   if (quiet || json) {
     hush();
+  }
+  if (!verbose) {
+    be_brief();
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "file/atomic_file.hpp"
+#include "format/model_json.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -45,9 +46,9 @@ inline constexpr const char* kLearnedModel = "out/learn/model.json";
 /// An option or argument for a model of `kelpie learn`, by default kLearnedModel.
 void add_model(CLI::App* command, const std::string& name, std::string& model);
 
-/// Reads the model of add_model(). Throws InputError as format::read_model() does; a missing file
-/// is told with the command that makes one.
-TrainedModel read_given_model(const std::string& model);
+/// Reads the model of add_model(), with `info` where wanted, and warns of a doubtful model. Throws
+/// InputError as format::read_model() does; a missing file is told with the command that makes one.
+TrainedModel read_given_model(const std::string& model, format::ModelInfo* info = nullptr);
 
 /// Two command lines, without "kelpie ", for the end of the help.
 void add_examples(CLI::App* command, const std::string& first, const std::string& second);

@@ -52,6 +52,7 @@ void refuse_special(std::string_view option, const fs::path& file) {
 
 bool silent = false;
 bool hushed = false;
+bool brief = false;
 std::string* kept = nullptr;
 
 }  // namespace
@@ -70,6 +71,14 @@ void be_silent() {
 
 void hush() {
   hushed = true;
+}
+
+void be_brief() {
+  brief = true;
+}
+
+bool is_brief() {
+  return brief;
 }
 
 void print_document(std::string_view text) {

@@ -42,6 +42,10 @@ void be_silent();
 /// Switches say() off.
 void hush();
 
+/// Leaves tables of the log's signals to --verbose.
+void be_brief();
+bool is_brief();  ///< Whether be_brief() was called.
+
 /// Prints to the standard output stream, hushed or not, but not after be_silent().
 void print_document(std::string_view text);
 

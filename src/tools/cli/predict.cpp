@@ -232,6 +232,26 @@ void print_score(const std::string& name, const std::vector<double>& truth,
       scores[0].rows());
 }
 
+// Another vehicle, or another unit: a model knows nothing of what lies far outside of what it saw.
+void tell_far_inputs(const TrainedModel& model, const SeenRows& seen, const std::string& source) {
+  constexpr double kMargin = 0.5;  // of the range seen; by hand
+  const std::vector<Extremes>& known = model.axes.front().steady.seen;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const double margin = kMargin * (known[k].high - known[k].low);
+    std::size_t outside = 0;
+    for (std::size_t row = 0; row < seen.data.rows(); ++row) {
+      const double value = seen.data.input(row)[k];
+      outside += value < known[k].low - margin || value > known[k].high + margin ? 1 : 0;
+    }
+    if (2 * outside > seen.data.rows()) {
+      warn(
+          "{}: WARNING: {} is far outside of what the model has seen ({:.3g} to {:.3g}) in {} of "
+          "{} rows: another vehicle, or another unit? --units converts\n",
+          source, model.input_names[k], known[k].low, known[k].high, outside, seen.data.rows());
+    }
+  }
+}
+
 void predict(const PredictArguments& options) {
   check_output("--out", options.out, {options.source.path, options.model, options.config});
   const TrainedModel model = read_given_model(options.model);
@@ -251,6 +271,7 @@ void predict(const PredictArguments& options) {
   log::Table& table = log.table;
   const KnownRows known = known_rows(model, table, format::read_learned_logs(options.model));
   const SeenRows seen = seen_rows(model, table, log.roles);
+  tell_far_inputs(model, seen, options.source.path);
   const std::vector<NewColumn> columns = new_columns(model, seen, table.rows(), options.jacobian);
   for (const NewColumn& column : columns) {
     if (std::ranges::find(table.names, column.name) != table.names.end()) {

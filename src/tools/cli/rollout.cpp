@@ -97,7 +97,8 @@ file::OutFolder take_folder(const RolloutArguments& options,
 }
 
 study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel& model,
-                            const OpenLoop& loop, const log::Dataset& data) {
+                            const format::ColumnUnits& learned, const OpenLoop& loop,
+                            const log::Dataset& data) {
   const study::Split split =
       study::make_split(data, study::parse_split(options.split, options.seed));
   study::require_held_out(split);
@@ -117,7 +118,6 @@ study::OpenLoopResult judge(const RolloutArguments& options, const TrainedModel&
   result.held = study.rollout.between == CommandPath::held;
   result.states = state_names(model, loop);
   // The log's own where it has any: those of the model are of the log that was learned.
-  const format::ColumnUnits learned = format::read_units(options.model);
   for (const std::string& state : result.states) {
     const auto own = data.units.find(state);
     const auto known = learned.find(state);
@@ -215,14 +215,15 @@ void rollout(const RolloutArguments& options) {
   options.answer.begin();
   constexpr std::size_t kMostHorizons = 100;
   require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
-  const TrainedModel model = read_given_model(options.model);
+  format::ModelInfo info;
+  const TrainedModel model = read_given_model(options.model, &info);
   const OpenLoop loop = open_loop(model);
   if (options.start.empty()) {
     const log::Dataset data = study::aligned(read_judged_log(options, model), model.alignment);
     say_shift(model, data);
     const file::OutFolder folder =
         take_folder(options, {"result.json", "report.html", "example.csv"});
-    write_judgement(options, judge(options, model, loop, data));
+    write_judgement(options, judge(options, model, info.units, loop, data));
   } else {
     roll_commands(options, model, loop);
   }

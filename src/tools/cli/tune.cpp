@@ -106,13 +106,14 @@ TuneLogs open_tune_logs(const TuneArguments& options) {
   std::vector<std::string> paths{options.log.source.path};
   paths.insert(paths.end(), options.more.begin(), options.more.end());
   for (const std::string& path : paths) {
-    auto [plan, learned, config, draft] = open_tune_log(options, path);
+    PlannedLog log = open_tune_log(options, path);
+    study::LearnPlan& plan = log.plan;
     std::vector<std::size_t> rows = study::training_rows(plan.data, plan.split, options.only);
     opened.text +=
         fmt::format("{}\n{} training rows of configuration {}; split: {}\n{}\n", plan.data.source,
                     rows.size(), plan.data.configurations[rows.front()], plan.split.label,
                     study::alignment_text(plan.alignment, plan.data.rate_hz));
-    opened.config = std::move(config);
+    opened.config = std::move(log.config);
     opened.logs.push_back({std::move(plan.data), std::move(rows), plan.split.label});
   }
   return opened;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <regex>
+#include <string_view>
 #include <system_error>
 
 #include "kelpie/core/error.hpp"
@@ -28,6 +30,22 @@ std::string literal(const std::string& path) {
     text += letter;
   }
   return text;
+}
+
+// A part of a name with * and ? as a regular expression.
+std::string regex_of(const std::string& text) {
+  std::string expression;
+  for (const char letter : text) {
+    if (letter == '*') {
+      expression += ".*?";
+    } else if (letter == '?') {
+      expression += '.';
+    } else {
+      const bool is_special = std::string_view(R"(^$\.+()[]{}|)").find(letter) != std::string::npos;
+      expression += (is_special ? "\\" : "") + std::string(1, letter);
+    }
+  }
+  return expression;
 }
 
 std::vector<fs::path> globbed(const std::string& pattern) {
@@ -70,16 +88,35 @@ LogPattern::Part LogPattern::part_of(const std::string& text) {
             "in '" + text + "' ** has to stand between slashes, alone");
     return {.pattern = text};
   }
-  const std::size_t close = text.find('}', open);
-  require(close != std::string::npos, "", "in '" + text + "' a { has no }");
-  const std::string named = text.substr(open + 1, close - open - 1);
-  const std::string before = text.substr(0, open);
-  const std::string after = text.substr(close + 1);
-  require(named == "vehicle" || named == "mission", "",
-          "in '" + text + "' {" + named + "} has to be {vehicle} or {mission}");
-  require((before + after).find_first_of("*?[{}\\") == std::string::npos, "",
-          "in '" + text + "' no other wildcard may stand beside {" + named + "}");
-  return {before + "*" + after, named, before.size(), after.size()};
+  Part part;
+  std::string groups;
+  std::size_t at = 0;
+  for (std::size_t next = open; next != std::string::npos; next = text.find('{', at)) {
+    const std::size_t close = text.find('}', next);
+    require(close != std::string::npos, "", "in '" + text + "' a { has no }");
+    const std::string named = text.substr(next + 1, close - next - 1);
+    require(named == "vehicle" || named == "mission", "",
+            "in '" + text + "' {" + named + "} has to be {vehicle} or {mission}");
+    require(std::ranges::count(part.named, named) == 0, "",
+            "in '" + text + "' {" + named + "} stands twice");
+    const auto is_open = [&](std::size_t place) {
+      return place < text.size() && std::string_view("*?{}").find(text[place]) != std::string::npos;
+    };
+    require(!is_open(next - 1) && !is_open(close + 1), "",
+            "in '" + text + "' no other wildcard may stand beside {" + named +
+                "} without letters between");
+    const std::string before = text.substr(at, next - at);
+    part.pattern += before + "*";
+    groups += regex_of(before) + "(.*?)";
+    part.named.push_back(named);
+    at = close + 1;
+  }
+  const std::string after = text.substr(at);
+  require(text.find_first_of("[\\") == std::string::npos && after.find('}') == std::string::npos,
+          "", "in '" + text + "' no [ and \\ may stand beside {" + part.named.front() + "}");
+  part.pattern += after;
+  part.groups = std::regex(groups + regex_of(after));
+  return part;
 }
 
 std::string LogPattern::joined(std::size_t begin, std::size_t end) const {
@@ -97,11 +134,16 @@ void LogPattern::add(const fs::path& file, std::size_t folders,
   const std::vector<std::string> names = parts_of_path(file);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
-    if (!part.named.empty()) {
-      const std::string& name =
-          i < any_depth_ ? names[folders + i] : names[names.size() - (parts_.size() - i)];
-      (part.named == "vehicle" ? log.vehicle : log.mission) =
-          name.substr(part.before, name.size() - part.before - part.after);
+    if (part.named.empty()) {
+      continue;
+    }
+    const std::string& name =
+        i < any_depth_ ? names[folders + i] : names[names.size() - (parts_.size() - i)];
+    std::smatch found_groups;
+    if (std::regex_match(name, found_groups, part.groups)) {
+      for (std::size_t k = 0; k < part.named.size(); ++k) {
+        (part.named[k] == "vehicle" ? log.vehicle : log.mission) = found_groups[k + 1].str();
+      }
     }
   }
   found.push_back(std::move(log));

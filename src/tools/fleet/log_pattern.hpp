@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -16,12 +17,12 @@ struct MatchedLog {
 
 /// Pattern of the paths of logs, such as "dives/{vehicle}/**/{mission}.bag". `*`, `?` and `[…]`
 /// match as in a shell, `**` matches any number of folders (also zero); {vehicle} and {mission}
-/// match like `*` and name the log's group. Names that begin with a dot are skipped, as in a
-/// shell.
+/// match like `*`, as few letters as possible from the left, and name the log's group. Names that
+/// begin with a dot are skipped, as in a shell.
 class LogPattern {
  public:
-  /// Throws InputError on a second `**`, on `**` as a part of a name, and on braces with an unknown
-  /// name or beside another wildcard in the same name.
+  /// Throws InputError on a second `**`, on `**` as a part of a name, on braces with an unknown
+  /// name, and on a second brace of the same name.
   explicit LogPattern(const std::string& text);
 
   /// Matching logs, in no order. A relative pattern is relative to `folder`. Throws Failure on
@@ -33,10 +34,9 @@ class LogPattern {
  private:
   // A part of the path, from one slash to the next.
   struct Part {
-    std::string pattern;     // of fnmatch()
-    std::string named{};     // "vehicle", "mission" or empty
-    std::size_t before = 0;  // letters before the braces
-    std::size_t after = 0;
+    std::string pattern;               // of fnmatch()
+    std::vector<std::string> named{};  // "vehicle", "mission", in their order
+    std::regex groups{};               // with a group for each of these
   };
 
   static Part part_of(const std::string& text);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "format/identified_vehicle.hpp"
 
@@ -18,8 +20,21 @@ double half_width90(const PlanarParameter& parameter);
 /// The unit of a parameter of a fit: SI with a scale, else divided by kg.
 std::string parameter_unit(const study::Identification& found, std::size_t place);
 
+/// Where forces have their unit from, in words.
+std::string scale_text(const study::Identification& found);
+
+/// The parameters that the log tells.
+std::vector<std::size_t> identified_places(const study::Identification& found);
+
+inline constexpr const char* kParametersFormat = "kelpie-parameters";  ///< `format` of both
+inline constexpr int kParametersVersion = 1;                           ///< `version` of both
+
 /// Values, errors, intervals and correlations of a fit as YAML.
 std::string parameters_yaml(const study::Identification& found, Frame frame);
+
+/// The same as JSON: lists in place of maps by name, null for a number that isn't finite. Ends in a
+/// newline.
+std::string parameters_json(const study::Identification& found, Frame frame);
 
 /// A vehicle file (docs/vehicle.md). Requires `has_slots`.
 std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& source);

@@ -22,21 +22,6 @@ std::string number(fmt::format_string<double> format, double value) {
   return std::isfinite(value) ? fmt::format(format, double{value}) : "null";
 }
 
-std::string scale_text(const study::Identification& found) {
-  switch (found.scale) {
-    case study::ScaleSource::thrust:
-      return "thrust coefficients that were given";
-    case study::ScaleSource::inertia:
-      return "mass and added mass in surge that were given";
-    case study::ScaleSource::assumed_added_mass:
-      return "the mass that was given; added mass in surge assumed, 0.2 ± 0.15 of it: the error of "
-             "that is in every other";
-    case study::ScaleSource::none:
-      break;
-  }
-  return "none: all but angles and arms are divided by the surge inertia (mass and added mass)";
-}
-
 std::string parameter_line(const study::Identification& found, std::size_t place) {
   const PlanarParameter& parameter = found.fit.parameters[place];
   const std::string head =
@@ -64,13 +49,10 @@ std::string actuators(const study::Identification& found) {
 }
 
 std::string correlations(const study::Identification& found) {
-  std::vector<std::size_t> told;
+  const std::vector<std::size_t> told = identified_places(found);
   std::string names;
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
-    if (found.fit.parameters[i].state == ParameterState::identified) {
-      names += (told.empty() ? "" : ", ") + quoted(found.fit.parameters[i].name);
-      told.push_back(i);
-    }
+  for (const std::size_t i : told) {
+    names += (names.empty() ? "" : ", ") + quoted(found.fit.parameters[i].name);
   }
   std::string text = "correlations:\n  names: [" + names + "]\n  matrix:\n";
   for (const std::size_t a : told) {
@@ -84,6 +66,31 @@ std::string correlations(const study::Identification& found) {
 }
 
 }  // namespace
+
+std::string scale_text(const study::Identification& found) {
+  switch (found.scale) {
+    case study::ScaleSource::thrust:
+      return "thrust coefficients that were given";
+    case study::ScaleSource::inertia:
+      return "mass and added mass in surge that were given";
+    case study::ScaleSource::assumed_added_mass:
+      return "the mass that was given; added mass in surge assumed, 0.2 ± 0.15 of it: the error of "
+             "that is in every other";
+    case study::ScaleSource::none:
+      break;
+  }
+  return "none: all but angles and arms are divided by the surge inertia (mass and added mass)";
+}
+
+std::vector<std::size_t> identified_places(const study::Identification& found) {
+  std::vector<std::size_t> told;
+  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+    if (found.fit.parameters[i].state == ParameterState::identified) {
+      told.push_back(i);
+    }
+  }
+  return told;
+}
 
 const char* state_word(ParameterState state) {
   constexpr std::array kWords{std::pair{ParameterState::known, "given"},
@@ -126,10 +133,11 @@ std::string parameter_unit(const study::Identification& found, std::size_t place
 std::string parameters_yaml(const study::Identification& found, Frame frame) {
   std::string text = fmt::format(
       "# Parameters of Fossen's equation in the plane, by `kelpie identify`: docs/identify.md\n"
-      "format: kelpie-parameters\nversion: 1\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
+      "format: {}\nversion: {}\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
       "scale: {}\nmisfit: {}\n",
-      quoted(found.source), frame == Frame::flu ? "FLU" : "FRD", found.training_rows,
-      quoted(found.split), quoted(scale_text(found)), number("{:.3g}", found.fit.misfit));
+      kParametersFormat, kParametersVersion, quoted(found.source),
+      frame == Frame::flu ? "FLU" : "FRD", found.training_rows, quoted(found.split),
+      quoted(scale_text(found)), number("{:.3g}", found.fit.misfit));
   if (found.mass_kg) {
     text += fmt::format("mass_kg: {:.6g}\n", *found.mass_kg);
   }

@@ -11,6 +11,7 @@
 #include "format/model_parts.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
+#include "model/model_json.hpp"
 
 namespace kelpie::format {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "chart/text_table.hpp"
@@ -26,6 +27,14 @@ void add_lags(std::vector<std::string>& notes, const log::TopicAlignment& lags, 
     notes.push_back("the common lag, for one of their own explained hardly more: " +
                     join_text(common, ", "));
   }
+}
+
+void add_notes(std::vector<std::string>& notes, const log::SamplingReport& report) {
+  if (report.lags) {
+    add_lags(notes, *report.lags, report.lag_until_s);
+  }
+  notes.push_back(fmt::format("{} rows, {} whole in {} stretch{}", report.rows, report.whole_rows,
+                              report.segments, report.segments == 1 ? "" : "es"));
 }
 
 }  // namespace
@@ -75,13 +84,25 @@ std::string sampling_table(const log::SamplingReport& report) {
                                       derived.name, derived.info.points, derived.info.delay_s,
                                       derived.info.noise_gain));
   }
-  if (report.lags) {
-    add_lags(table.notes, *report.lags, report.lag_until_s);
-  }
-  table.notes.push_back(fmt::format("{} rows, {} whole in {} stretch{}", report.rows,
-                                    report.whole_rows, report.segments,
-                                    report.segments == 1 ? "" : "es"));
+  add_notes(table.notes, report);
   return chart::table_text(table);
+}
+
+std::string sampling_notes(const log::SamplingReport& report) {
+  if (report.sources.empty()) {
+    return "";
+  }
+  std::vector<std::string> notes;
+  const auto faulty = std::ranges::count_if(
+      report.sources, [](const auto& source) { return !faults_text(source.faults).empty(); });
+  if (faulty > 0) {
+    notes.push_back(
+        fmt::format("{} of {} signals have silences, stretches of one value or other "
+                    "faults: --verbose shows each",
+                    faulty, report.sources.size()));
+  }
+  add_notes(notes, report);
+  return join_text(notes, "\n") + "\n\n";
 }
 
 }  // namespace kelpie::report

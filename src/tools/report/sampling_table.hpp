@@ -15,4 +15,7 @@ std::string faults_text(const SignalFaults& faults);
 /// the rows. Empty without signals.
 std::string sampling_table(const log::SamplingReport& report);
 
+/// The same without the table: the lags, the rows, how many signals have faults.
+std::string sampling_notes(const log::SamplingReport& report);
+
 }  // namespace kelpie::report

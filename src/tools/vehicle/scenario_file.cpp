@@ -185,7 +185,10 @@ ExcitationSettings read_excitation(const file::TomlNode& section) {
 }  // namespace
 
 VehicleParameters read_vehicle(const std::filesystem::path& file) {
-  const file::TomlNode root = file::TomlNode::read(file);
+  return read_vehicle(file::TomlNode::read(file));
+}
+
+VehicleParameters read_vehicle(const file::TomlNode& root) {
   root.table({"body", "hydrodynamics", "rotors", "thrusters", "hold"});
   VehicleParameters vehicle;
   read_body(root, vehicle);

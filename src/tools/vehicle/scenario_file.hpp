@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "file/toml.hpp"
 #include "vehicle/parameters.hpp"
 #include "vehicle/scenario.hpp"
 
@@ -13,6 +14,7 @@ namespace kelpie::vehicle {
 // shape, a number that is not finite, and whatever validate() rejects.
 
 VehicleParameters read_vehicle(const std::filesystem::path& file);  ///< A vehicle file.
+VehicleParameters read_vehicle(const file::TomlNode& root);         ///< The content of one.
 
 /// A scenario file; the path of the vehicle's file is relative to the scenario's.
 Scenario read_scenario(const std::filesystem::path& file);

@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -207,6 +210,139 @@ TEST(InC, PredictionsAllocateNothing) {
   kelpie_predict_with_jacobian(model.get(), s.x.data(), 4, y.data(), 2, jacobian.data());
   kelpie_assess(model.get(), s.x.data(), 4, assessed.data(), 2, 0.0);
   EXPECT_EQ(testing::allocations, before);
+}
+
+// A vehicle with two thrusters whose second one gives half its thrust from row `kDamage` on.
+constexpr int kDamage = 4000;
+constexpr std::array kBoat{"u", "v", "r", "n1", "n2"};
+constexpr std::array kBoatTargets{"udot", "vdot", "rdot"};
+
+class Boat {
+ public:
+  struct Row {
+    std::array<double, 5> x;
+    std::array<double, 3> y;
+    double t;
+  };
+  Row next() {
+    const double t = 0.1 * row_;
+    const double left = 6.0 * std::sin(0.23 * t) + 2.0 * std::sin(1.3 * t);
+    const double right = 6.0 * std::cos(0.31 * t) + 2.0 * std::sin(0.9 * t);
+    const double thrust = row_ < kDamage ? 1.0 : 0.5;
+    const double push_left = 0.01 * left * std::abs(left);
+    const double push_right = thrust * 0.01 * right * std::abs(right);
+    const double noise = 2e-3 * std::sin(1e4 * t);
+    const auto [u, v, r] = state_;
+    const std::array y{push_left + push_right - 0.3 * u - 0.8 * u * std::abs(u), -0.5 * v - u * r,
+                       1.5 * (push_right - push_left) - 0.6 * r};
+    const Row row{{u, v, r, left, right}, {y[0] + noise, y[1] - noise, y[2] + noise}, t};
+    for (std::size_t i = 0; i < state_.size(); ++i) {
+      state_[i] += 0.1 * y[i];
+    }
+    ++row_;
+    return row;
+  }
+
+ private:
+  std::array<double, 3> state_{};
+  int row_ = 0;
+};
+
+Model boat_model() {
+  kelpie_model* model = nullptr;
+  EXPECT_EQ(kelpie_create(kBoat.data(), 5, kBoatTargets.data(), 3, "buffer = 60", &model),
+            KELPIE_OK)
+      << kelpie_last_error();
+  return {model, kelpie_free};
+}
+
+TEST(InC, AChangeIsToldWithCauseSizeIntervalAndTime) {
+  const Model model = boat_model();
+  Boat boat;
+  std::size_t count = 1;
+  ASSERT_EQ(kelpie_findings(model.get(), nullptr, 0, &count), KELPIE_OK);
+  EXPECT_EQ(count, 0U);
+  for (int i = 0; i < kDamage + 1500; ++i) {
+    const Boat::Row row = boat.next();
+    ASSERT_EQ(kelpie_update(model.get(), row.x.data(), 5, row.y.data(), 3, row.t, nullptr),
+              KELPIE_OK);
+  }
+  std::array<kelpie_finding, KELPIE_MOST_FINDINGS> findings{};
+  ASSERT_EQ(kelpie_findings(model.get(), findings.data(), findings.size(), &count), KELPIE_OK);
+  ASSERT_EQ(count, 1U);
+  const kelpie_finding& found = findings[0];
+  EXPECT_EQ(found.state, KELPIE_NAMED);
+  EXPECT_NEAR(found.since_s, 0.1 * kDamage, 3.0);
+  ASSERT_EQ(found.count, 1);
+  EXPECT_EQ(found.causes[0].kind, KELPIE_THRUSTER);
+  EXPECT_EQ(found.causes[0].place, 4);
+  EXPECT_NEAR(found.causes[0].size, 0.5, 0.03);
+  EXPECT_LE(found.causes[0].lower, found.causes[0].size);
+  EXPECT_GE(found.causes[0].upper, found.causes[0].size);
+  std::array<char, 200> text{};
+  ASSERT_EQ(kelpie_finding_text(model.get(), 0, text.data(), text.size()), KELPIE_OK);
+  EXPECT_NE(std::string(text.data()).find("n2 gives "), std::string::npos) << text.data();
+  ASSERT_EQ(kelpie_finding_text(model.get(), 0, text.data(), 5), KELPIE_OK);
+  EXPECT_EQ(std::string(text.data()).size(), 4U);
+  EXPECT_EQ(kelpie_finding_text(model.get(), 1, text.data(), text.size()), KELPIE_BAD_INPUT);
+  EXPECT_EQ(kelpie_findings(model.get(), nullptr, 2, &count), KELPIE_BAD_INPUT);
+}
+
+TEST(InC, OneThreadTeachesWhileAnotherPredicts) {
+  kelpie_model* const model = boat_model().release();
+  kelpie_shared* shared = nullptr;
+  ASSERT_EQ(kelpie_share(model, &shared), KELPIE_OK) << kelpie_last_error();
+  const std::unique_ptr<kelpie_shared, decltype(&kelpie_free_shared)> owned(shared,
+                                                                            kelpie_free_shared);
+  ASSERT_EQ(kelpie_shared_model(shared), model);
+  EXPECT_STREQ(kelpie_target_name(kelpie_shared_model(shared), 2), "rdot");
+  std::array<kelpie_prediction, 3> y{};
+  const std::array x{0.1, 0.0, 0.0, 3.0, 3.0};
+  std::int64_t number = -1;
+  ASSERT_EQ(kelpie_shared_assess(shared, x.data(), 5, y.data(), 3, 0.0, &number), KELPIE_OK);
+  EXPECT_EQ(number, 0);
+  std::atomic<bool> is_over{false};
+  std::int64_t last = 0;
+  bool goes_up = true;
+  std::thread reader([&] {
+    std::array<double, 3> values{};
+    std::array<double, 15> jacobian{};
+    std::int64_t seen = 0;
+    while (!is_over.load()) {
+      if (kelpie_shared_predict_with_jacobian(shared, x.data(), 5, values.data(), 3,
+                                              jacobian.data(), &seen) != KELPIE_OK) {
+        goes_up = false;
+      }
+      goes_up = goes_up && seen >= last && (seen == 0 || std::isfinite(values[0]));
+      last = seen;
+    }
+  });
+  Boat boat;
+  for (int i = 0; i < 1000; ++i) {
+    const Boat::Row row = boat.next();
+    std::array<kelpie_decision, 3> decisions;
+    ASSERT_EQ(
+        kelpie_shared_update(shared, row.x.data(), 5, row.y.data(), 3, row.t, decisions.data()),
+        KELPIE_OK);
+  }
+  is_over.store(true);
+  reader.join();
+  EXPECT_TRUE(goes_up);
+  // What the class says, from the model within.
+  ASSERT_EQ(kelpie_shared_assess(shared, x.data(), 5, y.data(), 3, 0.0, &number), KELPIE_OK);
+  EXPECT_GT(number, 0);
+  std::array<kelpie_prediction, 3> own{};
+  ASSERT_EQ(kelpie_assess(kelpie_shared_model(shared), x.data(), 5, own.data(), 3, 0.0), KELPIE_OK);
+  EXPECT_EQ(y[0].value, own[0].value);
+  EXPECT_EQ(y[2].lower, own[2].lower);
+  EXPECT_FALSE(saved(kelpie_shared_model(shared)).empty());
+  // The model belongs to the shared one.
+  const Boat::Row row = boat.next();
+  EXPECT_EQ(kelpie_update(model, row.x.data(), 5, row.y.data(), 3, row.t, nullptr),
+            KELPIE_BAD_INPUT);
+  kelpie_shared* twice = nullptr;
+  EXPECT_EQ(kelpie_share(model, &twice), KELPIE_BAD_INPUT);
+  EXPECT_EQ(kelpie_share(nullptr, &twice), KELPIE_BAD_INPUT);
 }
 
 }  // namespace

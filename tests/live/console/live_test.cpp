@@ -31,6 +31,9 @@ using testing::Outcome;
 using testing::read_text;
 using testing::Running;
 
+// Two models are the same, or not, with few samples as with many.
+const std::string kSmall = "buffer = 60\nanchors = 20\n";
+
 TEST_F(LiveCommand, EndsWithTheModelThatLearnGives) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "none"},
@@ -91,7 +94,7 @@ TEST_F(LiveCommand, ARealMissionEndsWithTheModelThatLearnGives) {
   }
   const std::string messages = (fs::path(KELPIE_SOURCE_DIR) / "examples" / "msg").string();
   config.replace(config.find("\"msg\""), 5, "\"" + messages + "\"");
-  write("x.toml", config + "\n[live]\nfrozen = \"learn\"\n");
+  write("x.toml", kSmall + config + "\n[live]\nfrozen = \"learn\"\n");
   const Outcome outcome = testing::succeeded(
       run("live --config x.toml --from '" + bag.string() + "' --speed max --out out"));
   expect_model_of_learn("out", "auto", "'" + bag.string() + "'");
@@ -104,13 +107,15 @@ TEST_F(LiveCommand, LogsOfAutopilotsEndWithTheModelThatLearnGives) {
       GTEST_SKIP() << "no data";
     }
     testing::succeeded(run("inspect '" + log.string() + "' --template x.toml"));
+    write("x.toml", kSmall + content("x.toml"));
     const Outcome outcome =
         run("live --config x.toml --from '" + log.string() + "' --speed max --fresh --out out");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     expect_model_of_learn("out", "auto", "'" + log.string() + "'");
     EXPECT_NE(outcome.err.find("--from of `kelpie live` is called --replay"), std::string::npos);
     const Outcome drafted = testing::succeeded(
-        run("live --replay '" + log.string() + "' --speed max --fresh --out drafted"));
+        run("live --replay '" + log.string() +
+            "' --set buffer=60 --set anchors=20 --speed max --fresh --out drafted"));
     EXPECT_EQ(model_of("drafted"), model_of("out"));
     EXPECT_NE(drafted.out.find("taken by types and names"), std::string::npos) << drafted.out;
     fs::remove(folder_ / "x.toml");
@@ -123,6 +128,7 @@ TEST_F(LiveCommand, ADriveOfArdusubEndsWithTheModelThatLearnGives) {
   write("drive.BIN", testing::ArdusubDrive::bin());
   for (const std::string name : {"drive.tlog", "drive.BIN"}) {
     testing::succeeded(run("inspect " + name + " --template x.toml"));
+    write("x.toml", kSmall + content("x.toml"));
     testing::succeeded(
         run("live --config x.toml --from " + name + " --speed max --fresh --out out"));
     expect_model_of_learn("out", "auto", name);

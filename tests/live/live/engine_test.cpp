@@ -346,5 +346,28 @@ TEST_F(Live, TheFirstStampNeedNotComeFirst) {
   EXPECT_EQ(testing::read_text(folder_ / "model.json"), model);
 }
 
+// Degrees for radians, at the door where messages come in; an operator who has put that right
+// begins the model anew.
+TEST_F(Live, ATargetInAnotherUnitMakesTheModelDoubtfulUntilAReset) {
+  const std::vector<Recorded> wrong = little_mission(150.0, 1, 0.0, 0.0174533);
+  const live::Health health =
+      run(wrong, testing::imu_config("align = \"none\""), testing::imu_topics());
+  EXPECT_EQ(health.learner.learned, health.rows - health.rows_incomplete);
+  EXPECT_NE(health.learner.doubt.find("degrees"), std::string::npos) << health.learner.doubt;
+  EXPECT_NE(said_.find("WARNING: the model is doubtful: " + health.learner.doubt),
+            std::string::npos)
+      << said_;
+  const std::vector<live::Alert> alerts = live::alerts_of(health, health);
+  ASSERT_FALSE(alerts.empty());
+  EXPECT_EQ(alerts.front().level, live::AlertLevel::error);
+  EXPECT_EQ(alerts.front().text, "the model is doubtful: " + health.learner.doubt);
+  // After a restart, the model is the same, and so is the doubt.
+  const std::vector<Recorded> right = little_mission(150.0, 2, 0.0, 1.0);
+  const std::string config = testing::imu_config("align = \"none\"");
+  EXPECT_FALSE(run(right, config, testing::imu_topics(), true).learner.doubt.empty());
+  requests_.push(live::Request::reset);
+  EXPECT_TRUE(run(right, config, testing::imu_topics(), true).learner.doubt.empty());
+}
+
 }  // namespace
 }  // namespace kelpie::engine_test

@@ -33,11 +33,19 @@ inline const std::vector<bag::Topic>& mission_topics() {
   return topics;
 }
 
+/// The same, with the measured acceleration of imu_config() in `/imu`.
+inline std::vector<bag::Topic> imu_topics() {
+  std::vector<bag::Topic> topics = mission_topics();
+  topics.push_back({.name = "/imu", .type = "geometry_msgs/msg/TwistStamped"});
+  return topics;
+}
+
 /// A little vehicle that moves along one axis for so long: its velocity at 20 Hz in /odom, its
 /// thruster at 11 Hz in /thruster, and a topic that nobody can decode. Received 5 to 15 ms after
-/// their stamps, in the order of being received. The rotor follows its command in `lag_s`.
+/// their stamps, in the order of being received. The rotor follows its command in `lag_s`. With a
+/// unit (m/s²) of accelerations also /imu at 20 Hz.
 inline std::vector<Recorded> little_mission(double seconds, std::uint64_t seed = 1,
-                                            double lag_s = 0.0) {
+                                            double lag_s = 0.0, double imu_unit = 0.0) {
   constexpr std::int64_t kBegin = 1'700'000'000 * kSecond;
   constexpr std::int64_t kStep = kSecond / 1000;
   RandomStream random(seed, "mission");
@@ -63,7 +71,11 @@ inline std::vector<Recorded> little_mission(double seconds, std::uint64_t seed =
       messages.push_back({2, received(), Bytes(64)});
     }
     rotor += lag_s > 0.0 ? 1e-3 * (n - rotor) / lag_s : n - rotor;
-    u += 1e-3 * (0.01 * rotor * std::abs(rotor) - 2.0 * u * std::abs(u) - 0.3 * u);
+    const double udot = 0.01 * rotor * std::abs(rotor) - 2.0 * u * std::abs(u) - 0.3 * u;
+    if (imu_unit != 0.0 && k % 50 == 13) {
+      messages.push_back({3, received(), twist_at(stamp, udot / imu_unit)});
+    }
+    u += 1e-3 * udot;
   }
   std::ranges::stable_sort(messages, {}, &Recorded::receive_ns);
   return messages;
@@ -77,6 +89,15 @@ inline std::string mission_config(const std::string& log = "", const std::string
          "\n[log.states]\nu = \"/odom:twist.linear.x\"\n"
          "[log.commands]\nn = \"/thruster:twist.linear.x\"\n"
          "[log.derived]\nudot = \"d(u)\"\n[live]\n" +
+         live + "\n";
+}
+
+/// The same with the acceleration of /imu as target.
+inline std::string imu_config(const std::string& live = "") {
+  return "buffer = 60\nanchors = 20\n"
+         "[log]\ninputs = [\"u\", \"n\"]\ntargets = [\"udot\"]\nrate = 10\n"
+         "[log.states]\nu = \"/odom:twist.linear.x\"\nudot = \"/imu:twist.linear.x\"\n"
+         "[log.commands]\nn = \"/thruster:twist.linear.x\"\n[live]\n" +
          live + "\n";
 }
 

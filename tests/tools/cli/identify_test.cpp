@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -163,6 +164,24 @@ TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
   expect_refused("log.csv --vehicle bad.toml", "mass_kg");
   expect_refused("log.csv --inputs u,v,r,th1,th2 --targets udot,vdot,th3",
                  "th3: isn't the acceleration of 'r'");
+}
+
+TEST_F(Identify, PrintsItsParametersAsJson) {
+  simulate(kDagon, "as_recorded", "log.csv");
+  const Outcome outcome = testing::succeeded(run("identify log.csv --out out --json"));
+  const nlohmann::json found = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(found["format"], "kelpie-parameters");
+  EXPECT_GT(found["held_out_r2"]["udot"]["vehicle"], 0.9);
+  const std::string yaml = content("out/parameters.yaml");
+  ASSERT_GT(found["parameters"].size(), 10U);
+  for (const nlohmann::json& parameter : found["parameters"]) {
+    EXPECT_NE(yaml.find("  \"" + parameter["name"].get<std::string>() + "\": {unit: "),
+              std::string::npos)
+        << parameter;
+    EXPECT_TRUE(parameter["state"] == "not told by the log" || parameter["value"].is_number())
+        << parameter;
+  }
+  EXPECT_EQ(found["correlations"]["names"].size(), found["correlations"]["matrix"].size());
 }
 
 }  // namespace

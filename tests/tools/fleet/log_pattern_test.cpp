@@ -86,6 +86,8 @@ TEST_F(LogPattern, NamesWhatStandsInBraces) {
   EXPECT_EQ(named("{vehicle}/run_{mission}.csv"), "d:9");
   EXPECT_EQ(named("{vehicle}/**/{mission}.csv"), "a:1 a:2 a:3 a:4 d:8 d:[10] d:run_9");
   EXPECT_EQ(named("a/**/{vehicle}/*.bag"), "c:");
+  EXPECT_EQ(named("d/{vehicle}_{mission}.csv"), "run:9");
+  EXPECT_EQ(named("d/*n_{mission}.c?v"), ":9");
   // The folder before an absolute pattern is the pattern's own.
   EXPECT_EQ(fleet::LogPattern((folder_ / "*" / "d").string() + "/{mission}_9.csv")
                 .find("/nowhere")
@@ -103,6 +105,8 @@ TEST_F(LogPattern, RefusesWhatItCouldNotName) {
   EXPECT_NE(refused("a**/b").find("between slashes"), std::string::npos);
   EXPECT_NE(refused("{boat}/b").find("{vehicle} or {mission}"), std::string::npos);
   EXPECT_NE(refused("{vehicle}*/b").find("beside {vehicle}"), std::string::npos);
+  EXPECT_NE(refused("{vehicle}_{vehicle}").find("stands twice"), std::string::npos);
+  EXPECT_NE(refused("[ab]_{vehicle}").find("no [ and"), std::string::npos);
   EXPECT_NE(refused("{vehicle/b").find("a { has no }"), std::string::npos);
   EXPECT_NE(refused("{vehicle}{mission}").find("beside {vehicle}"), std::string::npos);
   EXPECT_NE(refused("").find("has to be a path"), std::string::npos);

@@ -5,9 +5,15 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "kelpie/kelpie.h"
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "model/snapshot.hpp"
@@ -32,6 +38,53 @@ TrainedModel trained(const Drive& samples, const char* scaling) {
     model.update(samples.x[i], samples.y[i], static_cast<double>(i));
   }
   return model.trained();
+}
+
+// The same bytes in C, which needs none of the tools.
+TEST(ModelJson, IsReadInCToTheSamePredictionsToTheLastBit) {
+  const Drive samples = drive(1, 500);
+  TrainedModel model = trained(samples, "full");
+  const std::vector<std::size_t> commands{samples.inputs.size() - 1};
+  model.alignment = Alignment::by(0.5, samples.inputs, commands, 4.0);
+  const std::string text = format::model_json(model);
+  kelpie_trained* read = nullptr;
+  ASSERT_EQ(kelpie_read_trained(text.data(), text.size(), &read), KELPIE_OK) << kelpie_last_error();
+  const std::unique_ptr<kelpie_trained, decltype(&kelpie_free_trained)> owned(read,
+                                                                              kelpie_free_trained);
+  const std::size_t inputs = samples.inputs.size();
+  ASSERT_EQ(kelpie_trained_input_count(read), inputs);
+  ASSERT_EQ(kelpie_trained_target_count(read), 2U);
+  EXPECT_EQ(kelpie_trained_input_name(read, 0), samples.inputs[0]);
+  EXPECT_EQ(kelpie_trained_target_name(read, 1), samples.targets[1]);
+  EXPECT_EQ(kelpie_trained_target_name(read, 2), nullptr);
+  EXPECT_STREQ(kelpie_trained_alignment(read), "commands are taken 0.5 s later");
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  std::array<Prediction, 2> p{};
+  std::array<kelpie_prediction, 2> q{};
+  std::vector<double> slopes(2 * inputs);
+  std::vector<double> jacobian(2 * inputs);
+  for (const std::vector<double>& x : drive(2, 100).x) {
+    model.predict(x, a);
+    ASSERT_EQ(kelpie_trained_predict(read, x.data(), inputs, b.data(), 2), KELPIE_OK);
+    ASSERT_EQ(a, b);
+    model.predict(x, std::span<Prediction>(p));
+    ASSERT_EQ(kelpie_trained_assess(read, x.data(), inputs, q.data(), 2), KELPIE_OK);
+    ASSERT_EQ(p[1].lower, q[1].lower);
+    ASSERT_EQ(p[1].novelty, q[1].novelty);
+    model.predict_with_jacobian(x, a, slopes);
+    ASSERT_EQ(
+        kelpie_trained_predict_with_jacobian(read, x.data(), inputs, b.data(), 2, jacobian.data()),
+        KELPIE_OK);
+    ASSERT_EQ(slopes, jacobian);
+  }
+  EXPECT_EQ(kelpie_trained_predict(read, a.data(), inputs - 1, b.data(), 2), KELPIE_BAD_INPUT);
+  kelpie_trained* none = nullptr;
+  for (std::size_t size = 0; size < text.size(); size = size < 400 ? size + 1 : 2 * size) {
+    ASSERT_EQ(kelpie_read_trained(text.data(), size, &none), KELPIE_BAD_INPUT) << size;
+  }
+  EXPECT_EQ(kelpie_read_trained(nullptr, 0, &none), KELPIE_BAD_INPUT);
+  EXPECT_EQ(none, nullptr);
 }
 
 TEST(ModelJson, LoadsBackToTheSamePredictionsToTheLastBit) {
@@ -160,14 +213,22 @@ std::string refusal(const nlohmann::json& json) {
   return message_of<InputError>([&] { format::parse_model_json(json.dump(), "m.json"); });
 }
 
-TEST(ModelJson, UnitsAreKeptAndWrongOnesNamed) {
+TEST(ModelJson, UnitsAndDoubtAreKeptAndWrongOnesNamed) {
   testing::TemporaryFolder folder;
   const TrainedModel model = trained(drive(3, 200), "diagonal");
-  const format::ColumnUnits units{{"u", "m s^-1"}, {"udot", "m s^-2"}};
-  testing::write_text(folder / "m.json", format::model_json(model, {}, units));
-  EXPECT_EQ(format::read_units(folder / "m.json"), units);
+  const format::ModelInfo info{.units = {{"u", "m s^-1"}, {"udot", "m s^-2"}},
+                               .doubt = "udot is in g"};
+  testing::write_text(folder / "m.json", format::model_json(model, {}, info));
+  format::ModelInfo read;
+  format::read_model(folder / "m.json", &read);
+  EXPECT_EQ(read.units, info.units);
+  EXPECT_EQ(read.doubt, info.doubt);
   EXPECT_EQ(format::model_json(format::read_model(folder / "m.json")), format::model_json(model));
-  const auto bad = nlohmann::json::parse(format::model_json(model, {}, {{"u", "m//s"}}));
+  auto bad = nlohmann::json::parse(format::model_json(model, {}, info));
+  bad["doubt"] = 3;
+  EXPECT_EQ(refusal(bad), "m.json: doubt: is not a text");
+  bad.erase("doubt");
+  bad["units"]["u"] = "m//s";
   EXPECT_EQ(refusal(bad).find("m.json: units.u: 'm//s' is not a unit"), 0U) << refusal(bad);
 }
 

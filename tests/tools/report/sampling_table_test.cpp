@@ -26,10 +26,14 @@ TEST(SamplingTable, SaysWhatWasFoundInASignalAndDoneToIt) {
         "10 rows, 0 whole in 1 stretch"}) {
     EXPECT_NE(table.find(words), std::string::npos) << words << "\n" << table;
   }
+  const std::string notes = report::sampling_notes(report);
+  EXPECT_TRUE(notes.starts_with("1 of 2 signals have silences")) << notes;
+  EXPECT_TRUE(notes.ends_with("10 rows, 0 whole in 1 stretch\n\n")) << notes;
 }
 
 TEST(SamplingTable, OfATableAsItWasThereIsNothingToSay) {
   EXPECT_EQ(report::sampling_table({}), "");
+  EXPECT_EQ(report::sampling_notes({}), "");
 }
 
 }  // namespace

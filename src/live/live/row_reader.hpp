@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bag/reader.hpp"
+#include "kelpie/stream/stream_plan.hpp"
+#include "log/dataset.hpp"
+#include "log/read_log.hpp"
+
+namespace kelpie::live {
+
+/// The rows of a table as a recording: a message per row, on one topic with a number for each input
+/// and target.
+class RowReader final : public bag::MessageReader {
+ public:
+  static constexpr const char* kTopic = "rows";
+
+  /// Requires that `rows` outlives this.
+  explicit RowReader(const log::Dataset& rows);
+
+  Place place() const override;
+
+  /// Sources of a stream that makes the same rows again.
+  static std::vector<StreamPlan::Source> sources_of(const log::Dataset& rows);
+  static log::Reach reach_of(const log::Dataset& rows);
+
+ private:
+  bool step(bag::Message& message) override;
+  bool at_end() const override { return next_ == rows_.rows(); }
+
+  const log::Dataset& rows_;
+  std::size_t next_ = 0;
+  std::vector<std::byte> payload_;
+};
+
+}  // namespace kelpie::live
