@@ -97,7 +97,7 @@ IdentifyStudy study_identification(const vehicle::Scenario& first, std::size_t s
     std::size_t inside = 0;
     std::size_t judged = 0;
     for (std::size_t p = 0; p < fit.parameters.size(); ++p) {
-      const PlanarParameter& found = fit.parameters[p];
+      const FittedParameter& found = fit.parameters[p];
       const double off = std::abs(found.value - truth[p]);
       const bool held = off <= kNormal90 * found.error + kRounding * std::abs(truth[p]);
       IdentifiedParameter& row = study.parameters[p];

@@ -14,7 +14,8 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
       .finished();
 }
 
-// Mass matrix about the origin of a rigid body given about its centre of gravity.
+}  // namespace
+
 Matrix6 rigid_body_mass(double mass, const Eigen::Vector3d& centre,
                         const Eigen::Matrix3d& inertia) {
   const Eigen::Matrix3d arm = skew(centre);
@@ -25,8 +26,6 @@ Matrix6 rigid_body_mass(double mass, const Eigen::Vector3d& centre,
   matrix.bottomRightCorner<3, 3>() = inertia - mass * arm * arm;
   return matrix;
 }
-
-}  // namespace
 
 Plant make_plant(const VehicleParameters& vehicle, const Configuration& configuration) {
   const Payload& payload = configuration.payload;
