@@ -98,7 +98,7 @@ bool is_along(const PlanarThruster& thruster, double cosine_or_sine) {
 }
 
 // The simulator has two thrusters along surge, one along sway and two vertical ones.
-void fill_slots(IdentifiedVehicle& result, bool has_base) {
+void fill_slots(IdentifiedVehicle& result, bool has_verticals) {
   std::vector<std::size_t> surge;
   std::vector<std::size_t> sway;
   for (std::size_t i = 0; i < result.thrusters.size(); ++i) {
@@ -112,8 +112,10 @@ void fill_slots(IdentifiedVehicle& result, bool has_base) {
   if (surge.size() != 2 || sway.size() != 1 || result.thrusters.size() != 3) {
     return;
   }
+  result.body.thrusters.resize(vehicle::kPlanarThrusterCount);
   const auto put = [&](std::size_t slot, std::size_t i) {
     result.body.thrusters[slot] = in_six(result.thrusters[i], result.greatest_rps[i]);
+    result.body.thrusters[slot].name = vehicle::planar_thruster_names()[slot];
   };
   const auto side = [&](std::size_t i) {  // negative: left of the middle
     return in_six(result.thrusters[i], 0.0).position_m(1);
@@ -122,10 +124,11 @@ void fill_slots(IdentifiedVehicle& result, bool has_base) {
   put(vehicle::kSurgeLeft, surge[0]);
   put(vehicle::kSurgeRight, surge[1]);
   put(vehicle::kSway, sway[0]);
-  if (!has_base) {
+  if (!has_verticals) {
     for (const auto slot : {vehicle::kVerticalFront, vehicle::kVerticalRear}) {
       vehicle::Thruster& vertical = result.body.thrusters[slot];
       vertical = result.body.thrusters[vehicle::kSway];
+      vertical.name = vehicle::planar_thruster_names()[slot];
       vertical.direction = Eigen::Vector3d::UnitZ();
       vertical.position_m = {
           slot == vehicle::kVerticalFront ? kTuning.vertical_arm_m : -kTuning.vertical_arm_m, 0.0,
@@ -165,6 +168,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
   const double mass_kg = found.mass_kg.value_or(plane.surge_inertia /
                                                 (1.0 + study::kTuning.identification.added_share));
   result.body = base.value_or(assumed(plane, mass_kg));
+  const bool has_verticals = base && vehicle::drives_in_plane(*base);
   result.body.mass_kg = mass_kg;
   result.rest = base
                     ? "heave, roll, pitch, buoyancy, rotors and hold as in " + base_file
@@ -175,7 +179,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
   }
   result.constant_force = plane.constant_force;
   set_plane(plane, result.body);
-  fill_slots(result, base.has_value());
+  fill_slots(result, has_verticals);
   return result;
 }
 
