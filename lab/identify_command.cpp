@@ -38,8 +38,8 @@ std::vector<double> truth_of(const vehicle::Scenario& scenario) {
   truth.insert(truth.end(), kPlanarAxes, 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     const vehicle::Vector6 axis = plant.thrust_axes.col(static_cast<Eigen::Index>(i));
-    truth.push_back(plant.thrusters[i].forward);
-    truth.push_back(plant.thrusters[i].reverse);
+    truth.push_back(plant.forward(static_cast<Eigen::Index>(i)));
+    truth.push_back(plant.reverse(static_cast<Eigen::Index>(i)));
     truth.push_back(std::atan2(-axis(1), axis(0)));
     truth.push_back(-axis(5));
   }
@@ -159,6 +159,7 @@ std::string study_text(const IdentifyStudy& study) {
 void run_identify_study(const IdentifyStudyArguments& options) {
   require(options.seeds > 0, "--seeds", "has to be > 0");
   const vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
+  vehicle::require_plane(scenario.vehicle);
   require(scenario.configurations.size() == 1, "scenario", "has to have one configuration");
   const IdentifyStudy study = run_watched("identifying", [&](const auto& keep_going) {
     return study_identification(scenario, options.seeds, keep_going);

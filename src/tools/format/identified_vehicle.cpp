@@ -101,7 +101,8 @@ vehicle::Thruster in_file(const IdentifiedThruster& thruster) {
           .reverse = thruster.reverse,
           .position_m = thruster.position_m,
           .direction = thruster.direction,
-          .max_speed_rps = thruster.greatest_rps};
+          .max_speed_rps = thruster.greatest,
+          .name = thruster.name};
 }
 
 bool is_along(const IdentifiedThruster& thruster, double cosine_or_sine) {
@@ -110,7 +111,7 @@ bool is_along(const IdentifiedThruster& thruster, double cosine_or_sine) {
 }
 
 // The simulator has two thrusters along surge, one along sway and two vertical ones.
-void fill_slots(IdentifiedVehicle& result, bool has_base) {
+void fill_slots(IdentifiedVehicle& result, bool has_verticals) {
   std::vector<std::size_t> surge;
   std::vector<std::size_t> sway;
   for (std::size_t i = 0; i < result.thrusters.size(); ++i) {
@@ -124,8 +125,10 @@ void fill_slots(IdentifiedVehicle& result, bool has_base) {
   if (surge.size() != 2 || sway.size() != 1 || result.thrusters.size() != 3) {
     return;
   }
+  result.body.thrusters.resize(vehicle::kPlanarThrusterCount);
   const auto put = [&](std::size_t slot, std::size_t i) {
     result.body.thrusters[slot] = in_file(result.thrusters[i]);
+    result.body.thrusters[slot].name = vehicle::planar_thruster_names()[slot];
   };
   const auto side = [&](std::size_t i) {  // negative: left of the middle
     return result.thrusters[i].position_m(1);
@@ -134,10 +137,11 @@ void fill_slots(IdentifiedVehicle& result, bool has_base) {
   put(vehicle::kSurgeLeft, surge[0]);
   put(vehicle::kSurgeRight, surge[1]);
   put(vehicle::kSway, sway[0]);
-  if (!has_base) {
+  if (!has_verticals) {
     for (const auto slot : {vehicle::kVerticalFront, vehicle::kVerticalRear}) {
       vehicle::Thruster& vertical = result.body.thrusters[slot];
       vertical = result.body.thrusters[vehicle::kSway];
+      vertical.name = vehicle::planar_thruster_names()[slot];
       vertical.direction = Eigen::Vector3d::UnitZ();
       vertical.position_m = {
           slot == vehicle::kVerticalFront ? kTuning.vertical_arm_m : -kTuning.vertical_arm_m, 0.0,
@@ -274,7 +278,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
     }
     thruster.forward /= turns * turns;
     thruster.reverse /= turns * turns;
-    thruster.greatest_rps = found.greatest_speeds[i] * turns;
+    thruster.greatest = found.greatest_speeds[i] * turns;
     const auto lag = std::ranges::find(found.lags, thruster.name, &LagInterval::command);
     thruster.lag_s = lag == found.lags.end() ? 0.0 : lag->lag_s;
     result.thrusters.push_back(thruster);
@@ -282,6 +286,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
   const double mass_kg = found.mass_kg.value_or(plane.surge_inertia /
                                                 (1.0 + study::kTuning.identification.added_share));
   result.body = base.value_or(assumed(plane, mass_kg));
+  const bool has_verticals = base && vehicle::drives_in_plane(*base);
   result.body.mass_kg = mass_kg;
   result.rest = base
                     ? "heave, roll, pitch, buoyancy, rotors and hold as in " + base_file
@@ -294,7 +299,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
     result.constant_force(kOfSix[axis]) = plane.constant_force[axis];
   }
   set_plane(plane, result.body);
-  fill_slots(result, base.has_value());
+  fill_slots(result, has_verticals);
   return result;
 }
 

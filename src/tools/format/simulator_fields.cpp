@@ -168,7 +168,7 @@ double lag_of(const IdentifiedVehicle& vehicle, const IdentifiedThruster& thrust
 
 Fields thruster_fields(const IdentifiedVehicle& vehicle, const IdentifiedThruster& thruster) {
   Fields fields;
-  const double greatest = thruster.greatest_rps;
+  const double greatest = thruster.greatest;
   const bool told = thruster.reverse_told;
   add(fields, "name", xml_text(thruster.name));
   add(fields, "name_comment", comment_text(thruster.name));

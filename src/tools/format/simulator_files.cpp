@@ -225,12 +225,11 @@ std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& so
       body.mass_kg, table(body.inertia_kg_m2), list(body.centre_of_gravity_m),
       list(body.centre_of_buoyancy_m), body.net_buoyancy_n, table(body.added_mass),
       list(body.linear_damping), list(body.quadratic_damping), body.rotor_lag_s);
-  for (std::size_t i = 0; i < vehicle::kThrusterCount; ++i) {
-    const vehicle::Thruster& thruster = body.thrusters[i];
+  for (const vehicle::Thruster& thruster : body.thrusters) {
     text += fmt::format(
         "[thrusters.{}]\nforward = {:.6g}\nreverse = {:.6g}\nposition_m = {}\n"
         "direction = [{:.17g}, {:.17g}, {:.17g}]\nmax_speed_rps = {:.6g}\n\n",
-        vehicle::thruster_names()[i], thruster.forward, thruster.reverse, list(thruster.position_m),
+        thruster.name, thruster.forward, thruster.reverse, list(thruster.position_m),
         thruster.direction(0), thruster.direction(1), thruster.direction(2),
         thruster.max_speed_rps);
   }
