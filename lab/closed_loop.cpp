@@ -82,7 +82,7 @@ class Swimming {
 
   void drive(const Eigen::Vector3d& commands) {
     for (std::int64_t tick = 0; tick < kControlTicks; ++tick) {
-      simulator_.advance(commands);
+      simulator_.advance_in_plane(commands);
     }
     ++periods_;
   }

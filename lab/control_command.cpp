@@ -227,6 +227,7 @@ struct ControlArguments {
 void control(const ControlArguments& options) {
   ControlPlan plan = options.plan;
   plan.vehicle = vehicle::read_scenario(scenario_file(options.scenario, "small.toml")).vehicle;
+  vehicle::require_plane(plan.vehicle);
   if (options.quick) {
     plan.commissioning_s = 120.0;
     plan.times = {.settle_s = 10.0, .before_s = 20.0, .during_s = 20.0, .after_s = 20.0};

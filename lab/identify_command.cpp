@@ -38,8 +38,8 @@ std::vector<double> truth_of(const vehicle::Scenario& scenario) {
   truth.insert(truth.end(), kPlanarAxes, 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     const vehicle::Vector6 axis = plant.thrust_axes.col(static_cast<Eigen::Index>(i));
-    truth.push_back(plant.thrusters[i].forward);
-    truth.push_back(plant.thrusters[i].reverse);
+    truth.push_back(plant.forward(static_cast<Eigen::Index>(i)));
+    truth.push_back(plant.reverse(static_cast<Eigen::Index>(i)));
     truth.push_back(std::atan2(-axis(1), axis(0)));
     truth.push_back(-axis(5));
   }
@@ -97,7 +97,7 @@ IdentifyStudy study_identification(const vehicle::Scenario& first, std::size_t s
     std::size_t inside = 0;
     std::size_t judged = 0;
     for (std::size_t p = 0; p < fit.parameters.size(); ++p) {
-      const PlanarParameter& found = fit.parameters[p];
+      const FittedParameter& found = fit.parameters[p];
       const double off = std::abs(found.value - truth[p]);
       const bool held = off <= kNormal90 * found.error + kRounding * std::abs(truth[p]);
       IdentifiedParameter& row = study.parameters[p];
@@ -159,6 +159,7 @@ std::string study_text(const IdentifyStudy& study) {
 void run_identify_study(const IdentifyStudyArguments& options) {
   require(options.seeds > 0, "--seeds", "has to be > 0");
   const vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
+  vehicle::require_plane(scenario.vehicle);
   require(scenario.configurations.size() == 1, "scenario", "has to have one configuration");
   const IdentifyStudy study = run_watched("identifying", [&](const auto& keep_going) {
     return study_identification(scenario, options.seeds, keep_going);

@@ -3,13 +3,12 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "kelpie/core/matrix.hpp"
+#include "kelpie/motion/parameter_fit.hpp"
 
 namespace kelpie {
 
@@ -68,22 +67,6 @@ struct PlanarRows {
   }
 };
 
-/// Result for one parameter.
-enum class ParameterState : std::uint8_t {
-  known,       ///< given: the inertia in the denominator of all ratios, or the source of the scale
-  identified,  ///< estimated
-  at_bound,    ///< the constraint on the sign is active
-  not_told,    ///< not determined by the log: the value alone is meaningless
-};
-
-/// Estimate of one parameter.
-struct PlanarParameter {
-  std::string name;  ///< "sway_inertia", "th1.forward"
-  double value = 0.0;
-  double error = 0.0;  ///< standard error
-  ParameterState state = ParameterState::identified;
-};
-
 /// Places of parameters: of the vehicle, then four of each thruster.
 struct PlanarPlace {
   static constexpr std::size_t surge_inertia = 0;
@@ -103,16 +86,10 @@ struct PlanarPlace {
 };
 
 /// Parameters of Fossen's equation in the plane, estimated from a log.
-struct PlanarFit {
-  std::vector<PlanarParameter> parameters;  ///< ratios to the surge inertia until scaled
-  Matrix covariance;                        ///< of all parameters
-  double misfit = 1.0;      ///< χ² of the structure over its expectation, at least 1
-  std::size_t windows = 0;  ///< number of windows in the fit
-  double window_s = 0.0;    ///< length of a window
-  Matrix free_terms;        ///< coefficients of the terms without the structure: terms × axes
+struct PlanarFit : ParameterFit {
+  Matrix free_terms;  ///< coefficients of the terms without the structure: terms × axes
 
   PlanarVehicle vehicle() const;  ///< The estimates, undetermined parameters included.
-  double correlation(std::size_t a, std::size_t b) const;  ///< Of two parameters; 0 without error.
   /// Prediction with free_terms. Shapes as in PlanarVehicle.
   PlanarVector free_acceleration(std::span<const double, kPlanarAxes> velocity,
                                  std::span<const double> speeds) const;
@@ -135,16 +112,6 @@ struct PlanarFit {
 /// masses or thrusts if rows or excitation are insufficient. Cost: windows × (11 + 2 thrusters)² ×
 /// lags. Allocates. Deterministic.
 PlanarFit fit_planar(const PlanarRows& rows);
-
-/// Scales masses, drags and forces so that the named thrusters have the given forward coefficients,
-/// without error; for several thrusters in the geometric mean. Throws InputError on an unknown or
-/// undetermined thruster and on a coefficient <= 0.
-PlanarFit scaled_by_thrust(const PlanarFit& fit,
-                           const std::vector<std::pair<std::string, double>>& forward);
-
-/// Scales masses, drags and forces so that the surge inertia is `kilograms`, with a standard error
-/// of `error`. Requires kilograms > 0.
-PlanarFit scaled_by_inertia(const PlanarFit& fit, double kilograms, double error);
 
 /// Agreement of the accelerations in a log with the slopes of its velocities, for one axis.
 struct AccelerationCheck {

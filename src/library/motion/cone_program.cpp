@@ -13,7 +13,7 @@ constexpr int kMostRounds = 3'000;
 constexpr double kClose = 1e-10;
 
 Eigen::Matrix2d block_of(const ConeProgram& program, const Eigen::VectorXd& x) {
-  const auto [a, b, c] = program.block;
+  const auto [a, b, c] = *program.block;
   return (Eigen::Matrix2d() << x(a), x(b), x(b), x(c)).finished();
 }
 
@@ -22,14 +22,18 @@ Eigen::VectorXd projected(const ConeProgram& program, Eigen::VectorXd x) {
   for (const Eigen::Index i : program.signs) {
     x(i) = std::max(x(i), 0.0);
   }
+  if (!program.block) {
+    return x;
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(block_of(program, x));
   if (eigen.eigenvalues().minCoeff() < program.least) {
     const Eigen::Matrix2d nearest = eigen.eigenvectors() *
                                     eigen.eigenvalues().cwiseMax(program.least).asDiagonal() *
                                     eigen.eigenvectors().transpose();
-    x(program.block[0]) = nearest(0, 0);
-    x(program.block[1]) = nearest(0, 1);
-    x(program.block[2]) = nearest(1, 1);
+    const auto [a, b, c] = *program.block;
+    x(a) = nearest(0, 0);
+    x(b) = nearest(0, 1);
+    x(c) = nearest(1, 1);
   }
   return x;
 }
@@ -37,10 +41,12 @@ Eigen::VectorXd projected(const ConeProgram& program, Eigen::VectorXd x) {
 // Of each variable; that of the block is one for its matrix, whose other diagonal counts twice.
 Eigen::VectorXd penalties(const ConeProgram& program) {
   Eigen::VectorXd rho = program.hessian.diagonal();
-  const auto [a, b, c] = program.block;
-  const double common = std::sqrt(rho(a) * rho(c));
-  rho(a) = rho(c) = common;
-  rho(b) = 2.0 * common;
+  if (program.block) {
+    const auto [a, b, c] = *program.block;
+    const double common = std::sqrt(rho(a) * rho(c));
+    rho(a) = rho(c) = common;
+    rho(b) = 2.0 * common;
+  }
   return 0.1 * rho;
 }
 
@@ -76,7 +82,8 @@ ConeSolution solve(const ConeProgram& program) {
   for (const Eigen::Index i : program.signs) {
     solution.at_bound[static_cast<std::size_t>(i)] = z(i) == 0.0;
   }
-  solution.block_at_bound = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block_of(program, z))
+  solution.block_at_bound = program.block &&
+                            Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block_of(program, z))
                                 .eigenvalues()
                                 .minCoeff() <= program.least * (1.0 + 1e-6);
   return solution;

@@ -3,17 +3,18 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace kelpie {
 
 /// minimise ½ xᵀHx − gᵀx subject to x_i ≥ 0 for i in `signs` and [x_a x_b; x_b x_c] ⪰ `least` · I
-/// for the places a, b, c of `block`. Convex: H symmetric, positive definite.
+/// for the places a, b, c of `block`, if any. Convex: H symmetric, positive definite.
 struct ConeProgram {
-  Eigen::MatrixXd hessian;
-  Eigen::VectorXd gradient;  ///< g
-  std::vector<Eigen::Index> signs;
-  std::array<Eigen::Index, 3> block{};
+  Eigen::MatrixXd hessian{};
+  Eigen::VectorXd gradient{};  ///< g
+  std::vector<Eigen::Index> signs{};
+  std::optional<std::array<Eigen::Index, 3>> block{};
   double least = 0.0;
 };
 

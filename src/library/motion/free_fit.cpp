@@ -62,9 +62,20 @@ Eigen::MatrixXd long_run(const Eigen::MatrixXd& scores, Eigen::Index lags) {
   return sum;
 }
 
+Eigen::MatrixXd between_blocks(const Eigen::MatrixXd& scores, Eigen::Index blocks) {
+  Eigen::MatrixXd sums(blocks, scores.cols());
+  for (Eigen::Index block = 0; block < blocks; ++block) {
+    const Eigen::Index begin = block * scores.rows() / blocks;
+    const Eigen::Index end = (block + 1) * scores.rows() / blocks;
+    sums.row(block) = scores.middleRows(begin, end - begin).colwise().sum();
+  }
+  const auto count = static_cast<double>(blocks);
+  return count / (count - 1.0) * (sums.transpose() * sums);
+}
+
 }  // namespace
 
-FreeFit fit_freely(const WeakRows& rows) {
+FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks) {
   FreeFit fit;
   const Eigen::Index n = rows.terms.rows();
   const Eigen::Index terms = rows.terms.cols();
@@ -83,12 +94,13 @@ FreeFit fit_freely(const WeakRows& rows) {
   fit.noise = residuals.transpose() * weights.asDiagonal() * residuals /
               std::max<double>(1.0, weights.sum() - static_cast<double>(terms));
   fit.noise.diagonal().array() += std::numeric_limits<double>::min();
-  Eigen::MatrixXd scores(n, 3 * terms);
+  const Eigen::Index axes = rows.acceleration.cols();
+  Eigen::MatrixXd scores(n, axes * terms);
   for (Eigen::Index term = 0; term < terms; ++term) {
-    scores.middleCols(3 * term, 3) =
+    scores.middleCols(axes * term, axes) =
         (weights.cwiseProduct(rows.terms.col(term))).asDiagonal() * residuals;
   }
-  fit.scores = long_run(scores, lags_of(residuals));
+  fit.scores = blocks > 0 ? between_blocks(scores, blocks) : long_run(scores, lags_of(residuals));
   return fit;
 }
 

@@ -9,16 +9,18 @@ namespace kelpie {
 
 /// Regression of the accelerations on all terms, axis by axis.
 struct FreeFit {
-  Eigen::MatrixXd coefficients;  ///< terms × 3
+  Eigen::MatrixXd coefficients;  ///< terms × axes
   Eigen::MatrixXd gram;          ///< Fᵀ W F, terms × terms
-  Eigen::Matrix3d noise;         ///< covariance of the residuals
-  /// Long-run covariance of the scores Σ_t w F_tk e_ta, axis fastest, with the autocorrelation of
-  /// the errors (Andrews 1991, Parzen kernel, AR(1) plug-in).
+  Eigen::MatrixXd noise;         ///< covariance of the residuals
+  /// Long-run covariance of the scores Σ_t w F_tk e_ta, axis fastest.
   Eigen::MatrixXd scores;
 };
 
-/// Least squares with Huber's weights; a window has the same weight on all axes. Requires more
+/// Least squares with Huber's weights; a window has the same weight on all axes. The covariance of
+/// the scores takes the autocorrelation of errors into account: with `blocks` = 0 by lags (Andrews
+/// 1991, Parzen kernel, AR(1) plug-in), else from the sums over so many pieces of the log (Liang &
+/// Zeger 1986), which are independent where errors last less long than a piece. Requires more
 /// windows than terms.
-FreeFit fit_freely(const WeakRows& rows);
+FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks = 0);
 
 }  // namespace kelpie

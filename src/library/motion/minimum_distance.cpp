@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/minimum_distance.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/normal_equations.hpp"
-#include "kelpie/motion/planar_fit.hpp"
 #include "motion/cone_program.hpp"
-#include "motion/structure.hpp"
 #include "motion/tuning.hpp"
 
 namespace kelpie {
@@ -24,23 +23,17 @@ Eigen::VectorXd chosen(const Eigen::VectorXd& values, const std::vector<Eigen::I
   return values(places);
 }
 
-// Drags and thrusts among the free parameters, as places in `free`.
-std::vector<Eigen::Index> signed_places(const std::vector<Eigen::Index>& free) {
+// Where parameters are among the free ones.
+std::vector<Eigen::Index> places_in(const std::vector<Eigen::Index>& free,
+                                    std::span<const Eigen::Index> parameters) {
   std::vector<Eigen::Index> places;
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const auto place = static_cast<std::size_t>(free[i]);
-    const bool is_drag = place >= PlanarPlace::linear_drag && place < PlanarPlace::constant_force;
-    const bool is_thrust = place >= PlanarPlace::thrusters &&
-                           (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
-    if (is_drag || is_thrust) {
-      places.push_back(static_cast<Eigen::Index>(i));
+  for (const Eigen::Index parameter : parameters) {
+    const auto found = std::ranges::find(free, parameter);
+    if (found != free.end()) {
+      places.push_back(found - free.begin());
     }
   }
   return places;
-}
-
-Eigen::Index place_in(const std::vector<Eigen::Index>& free, std::size_t parameter) {
-  return std::ranges::find(free, static_cast<Eigen::Index>(parameter)) - free.begin();
 }
 
 Eigen::MatrixXd with_ridge(Eigen::MatrixXd hessian) {
@@ -50,19 +43,21 @@ Eigen::MatrixXd with_ridge(Eigen::MatrixXd hessian) {
   return hessian;
 }
 
-}  // namespace
-
-Eigen::MatrixXd distance_metric(const FreeFit& fit, const Eigen::Matrix3d& mass) {
-  const Eigen::Matrix3d inverse = (mass * fit.noise * mass.transpose()).inverse();
+// W of MinimumDistance, axes · terms × axes · terms.
+Eigen::MatrixXd distance_metric(const FreeFit& fit, const Eigen::MatrixXd& mass) {
+  const Eigen::MatrixXd inverse = equilibrated_inverse(mass * fit.noise * mass.transpose());
   const Eigen::Index terms = fit.gram.rows();
-  Eigen::MatrixXd metric(3 * terms, 3 * terms);
+  const Eigen::Index axes = mass.rows();
+  Eigen::MatrixXd metric(axes * terms, axes * terms);
   for (Eigen::Index a = 0; a < terms; ++a) {
     for (Eigen::Index b = 0; b < terms; ++b) {
-      metric.block<3, 3>(3 * a, 3 * b) = fit.gram(a, b) * inverse;
+      metric.block(axes * a, axes * b, axes, axes) = fit.gram(a, b) * inverse;
     }
   }
   return metric;
 }
+
+}  // namespace
 
 FreeFit without_thrusters(const FreeFit& fit) {
   const Eigen::Index thrust = fit.gram.rows() - kTermThrusters;
@@ -76,25 +71,25 @@ FreeFit without_thrusters(const FreeFit& fit) {
   return vehicle;
 }
 
-MinimumDistance minimise_distance(const FreeFit& fit, MinimumDistance start) {
+MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& structure,
+                                  MinimumDistance start) {
   MinimumDistance best = std::move(start);
-  const double least = kIdentification.least_inertia *
-                       best.parameters(static_cast<Eigen::Index>(PlanarPlace::yaw_inertia));
+  ConeProgram program{.signs = places_in(best.free, structure.positive),
+                      .least = structure.least};
+  if (structure.block) {
+    const std::vector<Eigen::Index> block = places_in(best.free, *structure.block);
+    program.block = {block[0], block[1], block[2]};
+  }
   for (int step = 0; step < kMostSteps; ++step) {
-    const Eigen::MatrixXd metric = distance_metric(fit, planar_mass(best.parameters));
-    const StructureResidual residual = structure_residual(fit.coefficients, best.parameters);
+    const Eigen::MatrixXd metric = distance_metric(fit, structure.mass(best.parameters));
+    const StructureResidual residual = structure.residual(fit.coefficients, best.parameters);
     const Eigen::MatrixXd jacobian = residual.jacobian(Eigen::all, best.free);
     const Eigen::MatrixXd weighted = metric * jacobian;
     best.hessian = with_ridge(jacobian.transpose() * weighted);
     const Eigen::VectorXd now = chosen(best.parameters, best.free);
-    const ConeSolution next =
-        solve({.hessian = best.hessian,
-               .gradient = best.hessian * now - weighted.transpose() * residual.value,
-               .signs = signed_places(best.free),
-               .block = {place_in(best.free, PlanarPlace::sway_inertia),
-                         place_in(best.free, PlanarPlace::sway_yaw_inertia),
-                         place_in(best.free, PlanarPlace::yaw_inertia)},
-               .least = least});
+    program.hessian = best.hessian;
+    program.gradient = best.hessian * now - weighted.transpose() * residual.value;
+    const ConeSolution next = solve(program);
     best.parameters(best.free) = next.x;
     best.at_bound.assign(static_cast<std::size_t>(best.parameters.size()), false);
     for (std::size_t i = 0; i < best.free.size(); ++i) {
@@ -108,6 +103,29 @@ MinimumDistance minimise_distance(const FreeFit& fit, MinimumDistance start) {
     }
   }
   return best;
+}
+
+SandwichErrors sandwich(const FreeFit& fit, const EquationStructure& structure,
+                        const MinimumDistance& best) {
+  const Eigen::MatrixXd mass = structure.mass(best.parameters);
+  const Eigen::MatrixXd metric = distance_metric(fit, mass);
+  const Eigen::MatrixXd jacobian =
+      structure.residual(fit.coefficients, best.parameters).jacobian(Eigen::all, best.free);
+  const Eigen::Index terms = fit.gram.rows();
+  const Eigen::Index axes = mass.rows();
+  const Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
+  Eigen::MatrixXd from_scores(axes * terms, axes * terms);  // scores to M ΔBᵀ
+  for (Eigen::Index a = 0; a < terms; ++a) {
+    for (Eigen::Index b = 0; b < terms; ++b) {
+      from_scores.block(axes * a, axes * b, axes, axes) = inverse(a, b) * mass;
+    }
+  }
+  const Eigen::MatrixXd noise = from_scores * fit.scores * from_scores.transpose();
+  const Eigen::MatrixXd weighted = metric * jacobian;
+  const Eigen::MatrixXd gain = best.hessian.ldlt().solve(weighted.transpose());
+  const Eigen::MatrixXd left =
+      Eigen::MatrixXd::Identity(axes * terms, axes * terms) - jacobian * gain;
+  return {gain * noise * gain.transpose(), (metric * left * noise * left.transpose()).trace()};
 }
 
 }  // namespace kelpie

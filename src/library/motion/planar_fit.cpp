@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/motion/planar_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -53,42 +52,38 @@ std::vector<Eigen::Index> sought(const Eigen::MatrixXd& gram, Eigen::Index param
   return places;
 }
 
+// In the plane, with as many parameters as `parameters`.
+EquationStructure planar_structure(const Eigen::VectorXd& parameters) {
+  EquationStructure structure{.residual = structure_residual, .mass = planar_mass};
+  for (Eigen::Index place = 0; place < parameters.size(); ++place) {
+    const auto at = static_cast<std::size_t>(place);
+    const bool is_drag = at >= PlanarPlace::linear_drag && at < PlanarPlace::constant_force;
+    const bool is_thrust = at >= PlanarPlace::thrusters &&
+                           (at - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
+    if (is_drag || is_thrust) {
+      structure.positive.push_back(place);
+    }
+  }
+  structure.block = {static_cast<Eigen::Index>(PlanarPlace::sway_inertia),
+                     static_cast<Eigen::Index>(PlanarPlace::sway_yaw_inertia),
+                     static_cast<Eigen::Index>(PlanarPlace::yaw_inertia)};
+  structure.least = kIdentification.least_inertia *
+                    parameters(static_cast<Eigen::Index>(PlanarPlace::yaw_inertia));
+  return structure;
+}
+
 MinimumDistance fit_structure(const FreeFit& fit, std::size_t thrusters) {
   MinimumDistance start{.parameters = first_guess(fit, thrusters)};
   const auto vehicle_size = static_cast<Eigen::Index>(PlanarPlace::thrusters);
   MinimumDistance vehicle{.parameters = start.parameters.head(vehicle_size)};
   vehicle.free = sought(fit.gram, vehicle_size);
-  vehicle = minimise_distance(without_thrusters(fit), std::move(vehicle));
+  const EquationStructure without = planar_structure(vehicle.parameters);
+  vehicle = minimise_distance(without_thrusters(fit), without, std::move(vehicle));
   start.parameters.head(vehicle_size) = vehicle.parameters;
   guess_thrusters(fit, start.parameters);
   start.free = sought(fit.gram, start.parameters.size());
-  return minimise_distance(fit, std::move(start));
-}
-
-// Errors from the sandwich, and what chance alone would make of the distance.
-struct Errors {
-  Eigen::MatrixXd covariance;  // of the free parameters
-  double expected_distance = 1.0;
-};
-
-Errors sandwich(const FreeFit& fit, const MinimumDistance& best) {
-  const Eigen::Matrix3d mass = planar_mass(best.parameters);
-  const Eigen::MatrixXd metric = distance_metric(fit, mass);
-  const Eigen::MatrixXd jacobian =
-      structure_residual(fit.coefficients, best.parameters).jacobian(Eigen::all, best.free);
-  const Eigen::Index terms = fit.gram.rows();
-  const Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
-  Eigen::MatrixXd from_scores(3 * terms, 3 * terms);  // scores to M ΔBᵀ
-  for (Eigen::Index a = 0; a < terms; ++a) {
-    for (Eigen::Index b = 0; b < terms; ++b) {
-      from_scores.block<3, 3>(3 * a, 3 * b) = inverse(a, b) * mass;
-    }
-  }
-  const Eigen::MatrixXd noise = from_scores * fit.scores * from_scores.transpose();
-  const Eigen::MatrixXd weighted = metric * jacobian;
-  const Eigen::MatrixXd gain = best.hessian.ldlt().solve(weighted.transpose());
-  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(3 * terms, 3 * terms) - jacobian * gain;
-  return {gain * noise * gain.transpose(), (metric * left * noise * left.transpose()).trace()};
+  const EquationStructure structure = planar_structure(start.parameters);
+  return minimise_distance(fit, structure, std::move(start));
 }
 
 // The size of what a parameter does to its axis, per unit of it, and of all that is done there.
@@ -168,7 +163,7 @@ void require_excitation(const PlanarFit& fit, const MinimumDistance& best) {
 
 PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit& free_fit,
                     const MinimumDistance& best) {
-  const Errors errors = sandwich(free_fit, best);
+  const SandwichErrors errors = sandwich(free_fit, planar_structure(best.parameters), best);
   PlanarFit fit;
   fit.windows = static_cast<std::size_t>(weak.terms.rows());
   fit.window_s = 2.0 * kIdentification.half_window_s;
@@ -198,7 +193,9 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
             ? ParameterState::not_told
         : best.at_bound[i] ? ParameterState::at_bound
                            : ParameterState::identified;
-    fit.parameters.push_back({names[i], value, error, state});
+    const bool scales = i < PlanarPlace::thrusters ||
+                        (i - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
+    fit.parameters.push_back({names[i], value, error, state, scales});
   }
   require_excitation(fit, best);
   return fit;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/eigen.hpp"
 #include "core/text.hpp"
@@ -11,20 +12,17 @@
 namespace kelpie {
 namespace {
 
-// All but thrusters' angles and arms, which forces of any size have.
-bool has_scale(std::size_t place) {
-  return place < PlanarPlace::thrusters ||
-         (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
-}
+constexpr std::string_view kForward = ".forward";
 
-std::size_t find_forward(const PlanarFit& fit, const std::string& thruster) {
+std::size_t find_forward(const ParameterFit& fit, const std::string& thruster) {
   std::vector<std::string> names;
-  for (std::size_t at = PlanarPlace::thrusters; at < fit.parameters.size();
-       at += PlanarPlace::per_thruster) {
+  for (std::size_t at = 0; at < fit.parameters.size(); ++at) {
     const std::string& name = fit.parameters[at].name;
-    names.push_back(name.substr(0, name.rfind('.')));
-    if (names.back() == thruster) {
-      return at;
+    if (name.ends_with(kForward)) {
+      names.push_back(name.substr(0, name.size() - kForward.size()));
+      if (names.back() == thruster) {
+        return at;
+      }
     }
   }
   throw InputError("--thrust", "there is no thruster '" + thruster + "'" +
@@ -33,27 +31,26 @@ std::size_t find_forward(const PlanarFit& fit, const std::string& thruster) {
 }
 
 // θ → s(θ) θ: `slope` holds d ln s / dθ, `extra` the relative variance of s that has other causes.
-PlanarFit scaled(const PlanarFit& fit, double factor, const Eigen::VectorXd& slope, double extra) {
-  PlanarFit result = fit;
+void scale(ParameterFit& fit, double factor, const Eigen::VectorXd& slope, double extra) {
   const auto n = static_cast<Eigen::Index>(fit.parameters.size());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(n, n);
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(n);  // the values, where they have a scale
   for (Eigen::Index i = 0; i < n; ++i) {
-    PlanarParameter& parameter = result.parameters[static_cast<std::size_t>(i)];
-    if (has_scale(static_cast<std::size_t>(i))) {
+    FittedParameter& parameter = fit.parameters[static_cast<std::size_t>(i)];
+    if (parameter.scales) {
       parameter.value *= factor;
       moved(i) = parameter.value;
       jacobian.row(i) *= factor;
     }
   }
   jacobian += moved * slope.transpose();
-  as_matrix(result.covariance) = jacobian * as_matrix(fit.covariance) * jacobian.transpose() +
-                                 extra * moved * moved.transpose();
+  const Eigen::MatrixXd covariance =
+      jacobian * as_matrix(fit.covariance) * jacobian.transpose() +
+      extra * moved * moved.transpose();
+  as_matrix(fit.covariance) = covariance;
   for (Eigen::Index i = 0; i < n; ++i) {
-    result.parameters[static_cast<std::size_t>(i)].error = std::sqrt(
-        std::max(0.0, result.covariance(static_cast<std::size_t>(i), static_cast<std::size_t>(i))));
+    fit.parameters[static_cast<std::size_t>(i)].error = std::sqrt(std::max(0.0, covariance(i, i)));
   }
-  return result;
 }
 
 }  // namespace
@@ -81,7 +78,7 @@ PlanarVehicle PlanarFit::vehicle() const {
   return vehicle;
 }
 
-double PlanarFit::correlation(std::size_t a, std::size_t b) const {
+double ParameterFit::correlation(std::size_t a, std::size_t b) const {
   const double errors = std::sqrt(covariance(a, a) * covariance(b, b));
   return errors > 0.0 ? covariance(a, b) / errors : 0.0;
 }
@@ -94,8 +91,8 @@ PlanarVector PlanarFit::free_acceleration(std::span<const double, kPlanarAxes> v
   return {acceleration(0), acceleration(1), acceleration(2)};
 }
 
-PlanarFit scaled_by_thrust(const PlanarFit& fit,
-                           const std::vector<std::pair<std::string, double>>& forward) {
+void scale_by_thrust(ParameterFit& fit,
+                     const std::vector<std::pair<std::string, double>>& forward) {
   const auto n = static_cast<Eigen::Index>(fit.parameters.size());
   Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
   const double share = 1.0 / static_cast<double>(forward.size());
@@ -103,7 +100,7 @@ PlanarFit scaled_by_thrust(const PlanarFit& fit,
   std::vector<std::size_t> places;
   for (const auto& [thruster, given] : forward) {
     const std::size_t at = find_forward(fit, thruster);
-    const PlanarParameter& found = fit.parameters[at];
+    const FittedParameter& found = fit.parameters[at];
     require(given > 0.0, "--thrust", "has to be > 0, in N per square of the thruster's unit");
     if (found.state != ParameterState::identified) {
       throw InputError("--thrust",
@@ -113,18 +110,16 @@ PlanarFit scaled_by_thrust(const PlanarFit& fit,
     slope(static_cast<Eigen::Index>(at)) -= share / found.value;
     places.push_back(at);
   }
-  PlanarFit result = scaled(fit, std::exp(log_factor), slope, 0.0);
-  result.parameters[PlanarPlace::surge_inertia].state = ParameterState::identified;
+  scale(fit, std::exp(log_factor), slope, 0.0);
+  fit.parameters.front().state = ParameterState::identified;
   if (places.size() == 1) {
-    result.parameters[places.front()].state = ParameterState::known;
+    fit.parameters[places.front()].state = ParameterState::known;
   }
-  return result;
 }
 
-PlanarFit scaled_by_inertia(const PlanarFit& fit, double kilograms, double error) {
-  return scaled(fit, kilograms,
-                Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.parameters.size())),
-                std::pow(error / kilograms, 2.0));
+void scale_by_inertia(ParameterFit& fit, double kilograms, double error) {
+  scale(fit, kilograms, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.parameters.size())),
+        std::pow(error / kilograms, 2.0));
 }
 
 }  // namespace kelpie

@@ -28,19 +28,18 @@ struct Window {
 };
 
 Window window_at(std::span<const double> times, std::size_t begin, std::size_t end,
-                 double centre_s) {
+                 double centre_s, double half_s) {
   Window window;
-  while (times[begin] <= centre_s - kIdentification.half_window_s) {
+  while (times[begin] <= centre_s - half_s) {
     ++begin;
   }
   window.first = begin;
   double area = 0.0;
   double drift = 0.0;
-  for (std::size_t row = begin; row < end && times[row] < centre_s + kIdentification.half_window_s;
-       ++row) {
+  for (std::size_t row = begin; row < end && times[row] < centre_s + half_s; ++row) {
     const double left = row > 0 ? times[row] - times[row - 1] : 0.0;
     const double right = row + 1 < end ? times[row + 1] - times[row] : 0.0;
-    const double s = (times[row] - centre_s) / kIdentification.half_window_s;
+    const double s = (times[row] - centre_s) / half_s;
     window.mean.push_back(0.5 * (left + right) * bump(s));
     window.slope.push_back(-0.5 * (left + right) * bump_slope(s));
     area += window.mean.back();
@@ -96,23 +95,22 @@ void drop_spikes(WeakRows& weak) {
   weak.given.conservativeResize(kept, Eigen::NoChange);
 }
 
-std::vector<Window> all_windows(const PlanarRows& rows) {
+std::vector<Window> all_windows(const EquationRows& rows, const WindowShape& shape) {
   std::vector<Window> windows;
   for (std::size_t stretch = 0; stretch < rows.starts.size(); ++stretch) {
     std::size_t begin = rows.starts[stretch];
     const std::size_t end =
-        stretch + 1 < rows.starts.size() ? rows.starts[stretch + 1] : rows.rows();
+        stretch + 1 < rows.starts.size() ? rows.starts[stretch + 1] : rows.times_s.size();
     if (begin == end) {
       continue;
     }
-    const double last = rows.times_s[end - 1] - kIdentification.half_window_s;
-    for (double centre = rows.times_s[begin] + kIdentification.half_window_s; centre <= last;
-         centre += kIdentification.stride_s) {
-      while (rows.times_s[begin] <=
-             centre - kIdentification.half_window_s - kIdentification.stride_s) {
+    const double last = rows.times_s[end - 1] - shape.half_s;
+    for (double centre = rows.times_s[begin] + shape.half_s; centre <= last;
+         centre += shape.stride_s) {
+      while (rows.times_s[begin] <= centre - shape.half_s - shape.stride_s) {
         ++begin;
       }
-      Window window = window_at(rows.times_s, begin, end, centre);
+      Window window = window_at(rows.times_s, begin, end, centre, shape.half_s);
       if (window.mean.size() >= kIdentification.window_rows) {
         windows.push_back(std::move(window));
       }
@@ -130,30 +128,46 @@ void PlanarTerms::evaluate(std::span<const double, kPlanarAxes> velocity,
   terms_.evaluate(inputs_, std::span(terms.data(), terms_.size()));
 }
 
-WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations) {
-  const std::vector<Window> windows = all_windows(rows);
+WeakRows weak_rows(const EquationRows& rows, const WindowShape& shape) {
+  const std::vector<Window> windows = all_windows(rows, shape);
   const auto count = static_cast<Eigen::Index>(windows.size());
-  const Eigen::Index terms = term_count(rows.thrusters.size());
-  WeakRows weak{Eigen::MatrixXd::Zero(count, 3), Eigen::MatrixXd::Zero(count, terms),
-                Eigen::MatrixXd::Zero(count, 3)};
-  PlanarTerms evaluated(rows.thrusters.size());
-  Eigen::VectorXd row_terms(terms);
+  const Eigen::Index axes = rows.velocities.cols();
+  WeakRows weak{Eigen::MatrixXd::Zero(count, axes), Eigen::MatrixXd::Zero(count, rows.terms.cols()),
+                Eigen::MatrixXd::Zero(count, axes)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const Window& window = windows[static_cast<std::size_t>(i)];
     for (std::size_t k = 0; k < window.mean.size(); ++k) {
-      const std::size_t row = window.first + k;
-      evaluated.evaluate(rows.velocity(row), rows.speed(row), row_terms);
-      weak.terms.row(i) += window.mean[k] * row_terms.transpose();
-      weak.acceleration.row(i) +=
-          window.slope[k] * Eigen::Map<const Eigen::RowVector3d>(rows.velocity(row).data());
-      if (!accelerations.empty()) {
-        weak.given.row(i) += window.mean[k] * Eigen::Map<const Eigen::RowVector3d>(
-                                                  accelerations.data() + kPlanarAxes * row);
+      const auto row = static_cast<Eigen::Index>(window.first + k);
+      weak.terms.row(i) += window.mean[k] * rows.terms.row(row);
+      weak.acceleration.row(i) += window.slope[k] * rows.velocities.row(row);
+      if (rows.given.size() > 0) {
+        weak.given.row(i) += window.mean[k] * rows.given.row(row);
       }
     }
   }
   drop_spikes(weak);
   return weak;
+}
+
+WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto count = static_cast<Eigen::Index>(rows.rows());
+  EquationRows equation{.times_s = rows.times_s,
+                        .starts = rows.starts,
+                        .velocities = Eigen::Map<const RowMajor>(rows.velocities.data(), count, 3),
+                        .terms = Eigen::MatrixXd(count, term_count(rows.thrusters.size()))};
+  if (!accelerations.empty()) {
+    equation.given = Eigen::Map<const RowMajor>(accelerations.data(), count, 3);
+  }
+  PlanarTerms evaluated(rows.thrusters.size());
+  Eigen::VectorXd row_terms(equation.terms.cols());
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    evaluated.evaluate(rows.velocity(at), rows.speed(at), row_terms);
+    equation.terms.row(row) = row_terms.transpose();
+  }
+  return weak_rows(equation,
+                   {.half_s = kIdentification.half_window_s, .stride_s = kIdentification.stride_s});
 }
 
 }  // namespace kelpie

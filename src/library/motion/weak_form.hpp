@@ -41,15 +41,32 @@ class PlanarTerms {
   std::vector<double> inputs_;
 };
 
-/// The equation in the weak form: a row per window.
-struct WeakRows {
-  Eigen::MatrixXd acceleration;  ///< windows × 3, from velocities
-  Eigen::MatrixXd terms;         ///< windows × terms
-  Eigen::MatrixXd given;         ///< windows × 3, from given accelerations, if any
+/// Test functions: bumps (1 − s²)³ of ±half_s around centres stride_s apart.
+struct WindowShape {
+  double half_s = 0.0;
+  double stride_s = 0.0;
 };
 
-/// Windows every half second within stretches. `accelerations` (rows × 3) may be empty. Windows
-/// with a spike of the log are dropped.
+/// Rows of an equation of motion that is linear in its terms.
+struct EquationRows {
+  std::span<const double> times_s;
+  std::span<const std::size_t> starts;  ///< first row of each stretch without a gap
+  Eigen::MatrixXd velocities;           ///< rows × axes
+  Eigen::MatrixXd terms;                ///< rows × terms
+  Eigen::MatrixXd given{};              ///< rows × axes: given accelerations; may be empty
+};
+
+/// The equation in the weak form: a row per window.
+struct WeakRows {
+  Eigen::MatrixXd acceleration;  ///< windows × axes, from velocities
+  Eigen::MatrixXd terms;         ///< windows × terms
+  Eigen::MatrixXd given;         ///< windows × axes, from given accelerations, if any
+};
+
+/// Windows within stretches. Windows with a spike of the log are dropped.
+WeakRows weak_rows(const EquationRows& rows, const WindowShape& shape);
+
+/// Windows of 5 s every half second, in the plane. `accelerations` (rows × 3) may be empty.
 WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations);
 
 }  // namespace kelpie

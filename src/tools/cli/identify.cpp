@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +16,7 @@
 #include "cli/output.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
+#include "format/certificate_json.hpp"
 #include "format/identified_vehicle.hpp"
 #include "format/parameters.hpp"
 #include "kelpie/core/error.hpp"
@@ -27,12 +31,31 @@ namespace {
 
 constexpr const char* kYaml = "parameters.yaml";
 constexpr const char* kPage = "identify.html";
-constexpr const char* kVehicleFile = "vehicle.toml";
-constexpr const char* kGazebo = "gazebo.sdf";
-constexpr const char* kUuv = "uuv_simulator.xacro";
-constexpr const char* kStonefish = "stonefish.xml";
+constexpr const char* kCertificate = "certificate.json";
+constexpr const char* kOwn = "kelpie";
 constexpr double kLeastMass = 1e-6;  // [kg]
 constexpr double kMostScale = 1e9;   // of masses [kg] and thrusts [N/n²]
+
+using Base = std::optional<vehicle::VehicleParameters>;
+
+// What is written for a simulator.
+struct EngineFile {
+  const char* engine;  // of --for, and of the certificate where one of that name is
+  const char* file;
+  std::string (*text)(const format::IdentifiedVehicle&, const std::string& source);
+};
+
+constexpr std::array kEngineFiles{
+    EngineFile{kOwn, "vehicle.toml", format::vehicle_toml},
+    EngineFile{"gazebo", "gazebo.sdf", format::gazebo_sdf},
+    EngineFile{"gazebo_plugin", "gazebo_plugin.sdf", format::gazebo_plugin_sdf},
+    EngineFile{"uuv_simulator", "uuv_simulator.xacro", format::uuv_xacro},
+    EngineFile{"stonefish", "stonefish.xml", format::stonefish_xml},
+    EngineFile{"blue", "blue.yaml", format::blue_yaml},
+    EngineFile{"orca4", "orca4.yaml", format::orca4_yaml},
+    EngineFile{"mss", "mss.m", format::mss_m},
+    EngineFile{"python_vehicle_simulator", "python_vehicle.py", format::python_vehicle},
+    EngineFile{"ardupilot", "ardupilot.parm", format::ardupilot_parm}};
 
 struct IdentifyArguments : PlanOptions {
   std::optional<int> only;
@@ -43,10 +66,9 @@ struct IdentifyArguments : PlanOptions {
   std::string vehicle;
   std::string frame = "FLU";
   std::string out = "out/identify";
+  std::vector<std::string> engines;
   AnswerOptions answer;
 };
-
-using Base = std::optional<vehicle::VehicleParameters>;
 
 study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& base) {
   study::KnownThrust wish{.mass_kg = options.mass_kg,
@@ -81,28 +103,72 @@ Frame body_frame(const std::string& name) {
   return frame;
 }
 
-// Simulators' files where forces have a scale; what can't be is said.
-void add_simulators(const study::Identification& found, const IdentifyArguments& options,
-                    const Base& base, Frame frame, file::FileSet& files) {
-  if (found.scale == study::ScaleSource::none) {
-    return;
+std::vector<std::string> all_files() {
+  std::vector<std::string> names{kYaml, kPage, kCertificate};
+  for (const EngineFile& one : kEngineFiles) {
+    names.emplace_back(one.file);
   }
-  const format::IdentifiedVehicle vehicle =
-      format::identified_vehicle(found, frame, base, options.vehicle);
-  files[kGazebo] = format::gazebo_sdf(vehicle, found.source);
-  files[kUuv] = format::uuv_xacro(vehicle, found.source);
-  files[kStonefish] = format::stonefish_xml(vehicle, found.source);
+  return names;
+}
+
+// The files of --for, all without the option. Throws InputError on another name.
+std::vector<EngineFile> wanted_files(const std::vector<std::string>& engines) {
+  std::vector<std::string> known;
+  for (const EngineFile& one : kEngineFiles) {
+    known.emplace_back(one.engine);
+  }
+  for (const std::string& engine : engines) {
+    if (std::ranges::find(known, engine) == known.end()) {
+      throw InputError("--for", "'" + engine + "' is no simulator" + did_you_mean(engine, known) +
+                                    "; known are " + join_text(known, ", "));
+    }
+  }
+  std::vector<EngineFile> wanted;
+  std::ranges::copy_if(kEngineFiles, std::back_inserter(wanted), [&](const EngineFile& one) {
+    return engines.empty() || std::ranges::find(engines, one.engine) != engines.end();
+  });
+  return wanted;
+}
+
+// The project's own simulator takes certain vehicles only; the reason is said.
+bool is_for_own_simulator(const format::IdentifiedVehicle& vehicle, const char* file) {
   if (!vehicle.has_slots) {
-    warn("no {}: kelpie's simulator has two thrusters along surge and one along sway\n",
-         kVehicleFile);
-    return;
+    warn("no {}: kelpie's simulator has two thrusters along surge and one along sway\n", file);
+    return false;
   }
   try {
     vehicle.body.validate();
-    files[kVehicleFile] = format::vehicle_toml(vehicle, found.source);
   } catch (const InputError& error) {
-    warn("no {}: {}\n", kVehicleFile, error.what());
+    warn("no {}: {}\n", file, error.what());
+    return false;
   }
+  return true;
+}
+
+// Simulators' files where forces have a scale.
+void add_simulators(const study::Identification& found, const format::IdentifiedVehicle& vehicle,
+                    const std::vector<EngineFile>& wanted, file::FileSet& files) {
+  for (const EngineFile& one : wanted) {
+    if (one.engine != kOwn || is_for_own_simulator(vehicle, one.file)) {
+      files[one.file] = one.text(vehicle, found.source);
+    }
+  }
+}
+
+// The certificates of the wanted simulators, the project's own equations first.
+study::CertificateList certificates_of(const format::IdentifiedVehicle& vehicle,
+                                       const study::RecordedDrive& drive,
+                                       const std::vector<EngineFile>& wanted) {
+  std::vector<vehicle::Engine> engines;
+  std::ranges::copy_if(
+      vehicle::engines(), std::back_inserter(engines), [&](const vehicle::Engine& engine) {
+        return engine.name == kOwn || std::ranges::any_of(wanted, [&](const EngineFile& one) {
+                 return engine.name == one.engine;
+               });
+      });
+  vehicle::EngineBody body = vehicle::engine_body(vehicle.body, vehicle.identified);
+  body.usual_speed = vehicle.usual_speed;
+  return study::certify(engines, body, drive);
 }
 
 void run_identify(const IdentifyArguments& options) {
@@ -115,18 +181,27 @@ void run_identify(const IdentifyArguments& options) {
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
   std::vector<std::string> inputs = options.files();
   inputs.push_back(options.vehicle);
-  const file::OutFolder out =
-      take_out_folder(options.out, {kYaml, kPage, kVehicleFile, kGazebo, kUuv, kStonefish}, inputs);
+  const std::vector<EngineFile> wanted = wanted_files(options.engines);
+  const file::OutFolder out = take_out_folder(options.out, all_files(), inputs);
   study::Identification found = study::identify(log.data, log.split, columns, wish, options.only);
   found.alignment = study::alignment_text(log.alignment, log.data.rate_hz);
   found.lags = log.lags;
-  file::FileSet files{{kYaml, format::parameters_yaml(found, frame)},
-                      {kPage, report::identification_html(found)},
-                      {kVehicleFile, std::nullopt},
-                      {kGazebo, std::nullopt},
-                      {kUuv, std::nullopt},
-                      {kStonefish, std::nullopt}};
-  add_simulators(found, options, base, frame, files);
+  file::FileSet files;
+  for (const std::string& name : all_files()) {
+    files[name] = std::nullopt;
+  }
+  if (found.scale != study::ScaleSource::none) {
+    format::IdentifiedVehicle vehicle =
+        format::identified_vehicle(found, frame, base, options.vehicle);
+    const study::RecordedDrive drive = format::recorded_drive(
+        vehicle, log.data, log.split, format::drive_columns(columns, found), frame, options.only);
+    vehicle.usual_speed = format::usual_speed(drive);
+    found.certificates = certificates_of(vehicle, drive, wanted);
+    add_simulators(found, vehicle, wanted, files);
+    files[kCertificate] = format::certificate_json(found.certificates, found.source);
+  }
+  files[kYaml] = format::parameters_yaml(found, frame);
+  files[kPage] = report::identification_html(found);
   file::write_files_whole(out.path(), files);
   Answer answer{.verdict = report::identification_verdict(found),
                 .tables = report::identification_table(found),
@@ -180,6 +255,9 @@ void add_identify(CLI::App& app) {
       ->add_option("--frame", options->frame, "of the log: sway to port (FLU) or starboard (FRD)")
       ->capture_default_str()
       ->type_name("{FLU,FRD}");
+  add_list(command, "--for", options->engines,
+           "simulators to write for, separated by commas; else all: kelpie, gazebo, gazebo_plugin, "
+           "uuv_simulator, stonefish, blue, orca4, mss, python_vehicle_simulator, ardupilot");
   add_seed(command, options->seed);
   add_out(command, options->out, "folder for the parameters and files of simulators");
   options->answer.add_to(*command, "the parameters as JSON");

@@ -28,15 +28,19 @@ void run_simulate(const SimulateArguments& options) {
   vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
   ProgressBar bar("simulating");
-  const std::vector<vehicle::LogRow> rows = [&] {
+  const vehicle::Progress progress = [&](double share) { bar.at(share); };
+  const log::Table table = [&] {
     try {
-      return vehicle::simulate(scenario, [&](double share) { bar.at(share); });
+      return scenario.log == vehicle::LogKind::six
+                 ? study::log_table(vehicle::simulate_six_axes(scenario, progress),
+                                    scenario.vehicle, options.scenario)
+                 : study::log_table(vehicle::simulate(scenario, progress), options.scenario);
     } catch (const InputError& error) {
       throw InputError({.file = options.scenario}, error.what());
     }
   }();
-  log::write_csv(options.out, study::log_table(rows, options.scenario));
-  say("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, rows.size(), scenario.duration_s(),
+  log::write_csv(options.out, table);
+  say("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, table.rows(), scenario.duration_s(),
       scenario.rate_hz, scenario.seed);
 }
 
@@ -49,7 +53,7 @@ void add_simulate(CLI::App& app) {
   add_file(command, "--out", options->out, "CSV file to write")->required();
   command->add_option("--seed", options->seed, "Instead of the scenario's seed");
   add_examples(command, "simulate scenarios/diagnosis.toml --out damaged.csv",
-               "simulate scenarios/diagnosis.toml --out other.csv --seed 2");
+               "simulate scenarios/bluerov2_heavy.toml --out six_axes.csv --seed 2");
 }
 
 }  // namespace kelpie::cli

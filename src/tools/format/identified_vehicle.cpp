@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 
+#include "core/seconds.hpp"
 #include "format/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "study/tuning.hpp"
@@ -15,6 +18,8 @@ namespace kelpie::format {
 namespace {
 
 using vehicle::VehicleParameters;
+
+constexpr std::array<Eigen::Index, kPlanarAxes> kOfSix{0, 1, 5};
 
 double revolutions(const std::string& unit) {
   if (unit.empty() || unit == "rev/s" || unit == "rev s^-1" || unit == "rps" || unit == "Hz" ||
@@ -65,7 +70,6 @@ void set_plane(const PlanarVehicle& plane, VehicleParameters& body) {
   body.added_mass(1, 1) = plane.sway_inertia - body.mass_kg;
   body.added_mass(5, 5) = plane.yaw_inertia - yaw;
   body.added_mass(1, 5) = body.added_mass(5, 1) = plane.sway_yaw_inertia - coupling;
-  constexpr std::array<Eigen::Index, kPlanarAxes> kOfSix{0, 1, 5};
   for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
     body.linear_damping(kOfSix[axis]) = plane.linear_drag[axis];
     body.quadratic_damping(kOfSix[axis]) = plane.quadratic_drag[axis];
@@ -81,51 +85,63 @@ void turn_to_frd(PlanarVehicle& plane) {
   plane.constant_force[2] = -plane.constant_force[2];
 }
 
-// The place on its line of action that is nearest to the origin.
-vehicle::Thruster in_six(const PlanarThruster& thruster, double greatest_rps) {
+// At the place on its line of action that is nearest to the origin.
+IdentifiedThruster in_six(const PlanarThruster& thruster) {
   const double c = std::cos(thruster.angle_rad);
   const double s = std::sin(thruster.angle_rad);
-  return {.forward = thruster.forward,
+  return {.name = thruster.name,
+          .forward = thruster.forward,
           .reverse = thruster.reverse,
           .position_m = {thruster.arm_m * s, -thruster.arm_m * c, 0.0},
-          .direction = {c, s, 0.0},
-          .max_speed_rps = greatest_rps};
+          .direction = {c, s, 0.0}};
 }
 
-bool is_along(const PlanarThruster& thruster, double cosine_or_sine) {
+vehicle::Thruster in_file(const IdentifiedThruster& thruster) {
+  return {.forward = thruster.forward,
+          .reverse = thruster.reverse,
+          .position_m = thruster.position_m,
+          .direction = thruster.direction,
+          .max_speed_rps = thruster.greatest,
+          .name = thruster.name};
+}
+
+bool is_along(const IdentifiedThruster& thruster, double cosine_or_sine) {
   return std::abs(cosine_or_sine) > std::cos(kTuning.most_off_rad) && thruster.forward > 0.0 &&
          thruster.reverse > 0.0;
 }
 
 // The simulator has two thrusters along surge, one along sway and two vertical ones.
-void fill_slots(IdentifiedVehicle& result, bool has_base) {
+void fill_slots(IdentifiedVehicle& result, bool has_verticals) {
   std::vector<std::size_t> surge;
   std::vector<std::size_t> sway;
   for (std::size_t i = 0; i < result.thrusters.size(); ++i) {
-    const PlanarThruster& thruster = result.thrusters[i];
-    if (is_along(thruster, std::cos(thruster.angle_rad))) {
+    const IdentifiedThruster& thruster = result.thrusters[i];
+    if (is_along(thruster, thruster.direction.x())) {
       surge.push_back(i);
-    } else if (is_along(thruster, std::sin(thruster.angle_rad))) {
+    } else if (is_along(thruster, thruster.direction.y())) {
       sway.push_back(i);
     }
   }
   if (surge.size() != 2 || sway.size() != 1 || result.thrusters.size() != 3) {
     return;
   }
+  result.body.thrusters.resize(vehicle::kPlanarThrusterCount);
   const auto put = [&](std::size_t slot, std::size_t i) {
-    result.body.thrusters[slot] = in_six(result.thrusters[i], result.greatest_rps[i]);
+    result.body.thrusters[slot] = in_file(result.thrusters[i]);
+    result.body.thrusters[slot].name = vehicle::planar_thruster_names()[slot];
   };
   const auto side = [&](std::size_t i) {  // negative: left of the middle
-    return in_six(result.thrusters[i], 0.0).position_m(1);
+    return result.thrusters[i].position_m(1);
   };
   std::ranges::sort(surge, {}, side);
   put(vehicle::kSurgeLeft, surge[0]);
   put(vehicle::kSurgeRight, surge[1]);
   put(vehicle::kSway, sway[0]);
-  if (!has_base) {
+  if (!has_verticals) {
     for (const auto slot : {vehicle::kVerticalFront, vehicle::kVerticalRear}) {
       vehicle::Thruster& vertical = result.body.thrusters[slot];
       vertical = result.body.thrusters[vehicle::kSway];
+      vertical.name = vehicle::planar_thruster_names()[slot];
       vertical.direction = Eigen::Vector3d::UnitZ();
       vertical.position_m = {
           slot == vehicle::kVerticalFront ? kTuning.vertical_arm_m : -kTuning.vertical_arm_m, 0.0,
@@ -135,7 +151,109 @@ void fill_slots(IdentifiedVehicle& result, bool has_base) {
   result.has_slots = true;
 }
 
+// Roll and pitch in FRD; the heading is 0.
+Eigen::Quaterniond attitude_of(const Attitude& attitude, std::span<const double> inputs,
+                               Frame frame) {
+  if (attitude.quaternion) {
+    const auto [x, y, z, w] = *attitude.quaternion;
+    const double flip = frame == Frame::flu ? -1.0 : 1.0;
+    return Eigen::Quaterniond(inputs[w], inputs[x], flip * inputs[y], flip * inputs[z])
+        .normalized();
+  }
+  const double roll = attitude.roll ? attitude.roll_unit * inputs[*attitude.roll] : 0.0;
+  const double pitch = attitude.pitch ? attitude.pitch_unit * inputs[*attitude.pitch] : 0.0;
+  return Eigen::AngleAxisd(frame == Frame::flu ? -pitch : pitch, Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+}
+
+vehicle::Vector6 velocity_of(const DriveColumns& columns, std::span<const double> inputs,
+                             Frame frame) {
+  vehicle::Vector6 velocity = vehicle::Vector6::Zero();
+  for (std::size_t axis = 0; axis < columns.velocities.size(); ++axis) {
+    if (columns.velocities[axis]) {
+      const bool turns = frame == Frame::flu && axis != 0 && axis != 3;
+      velocity(static_cast<Eigen::Index>(axis)) =
+          (turns ? -1.0 : 1.0) * inputs[*columns.velocities[axis]];
+    }
+  }
+  return velocity;
+}
+
+bool has_minute(const study::RecordedDrive& drive) {
+  constexpr double kMinuteS = 60.0;
+  for (std::size_t i = 0; i < drive.starts.size(); ++i) {
+    if (drive.times_s[drive.end_of(i) - 1] - drive.times_s[drive.starts[i]] >= kMinuteS) {
+      return true;
+    }
+  }
+  return false;
+}
+
+study::RecordedDrive drive_of(const IdentifiedVehicle& vehicle, const log::Dataset& data,
+                              const std::vector<std::size_t>& rows, const DriveColumns& columns,
+                              Frame frame) {
+  study::RecordedDrive drive;
+  const double longest_s = kLongestStep / data.rate_hz;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::size_t row = rows[i];
+    if (i == 0 || row != rows[i - 1] + 1 || data.times_s[row] - data.times_s[row - 1] > longest_s) {
+      drive.starts.push_back(i);
+    }
+    const std::span<const double> inputs = data.input(row);
+    drive.times_s.push_back(data.times_s[row]);
+    drive.velocities.push_back(velocity_of(columns, inputs, frame));
+    drive.attitudes.push_back(attitude_of(columns.attitude, inputs, frame));
+    vehicle::Vector6 force = vehicle.constant_force;
+    for (std::size_t k = 0; k < columns.thrusters.size(); ++k) {
+      force += vehicle.thrusters[k].force(columns.revolutions[k] * inputs[columns.thrusters[k]]);
+    }
+    drive.forces.push_back(force);
+  }
+  return drive;
+}
+
 }  // namespace
+
+double IdentifiedThruster::thrust(double speed_rps) const {
+  return (speed_rps > 0.0 ? forward : reverse) * speed_rps * std::abs(speed_rps);
+}
+
+vehicle::Vector6 IdentifiedThruster::force(double speed_rps) const {
+  return thrust(speed_rps) *
+         (vehicle::Vector6() << direction, position_m.cross(direction)).finished();
+}
+
+DriveColumns drive_columns(const study::PlanarColumns& columns,
+                           const study::Identification& found) {
+  DriveColumns drive{.thrusters = columns.thrusters};
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    drive.velocities[static_cast<std::size_t>(kOfSix[axis])] = columns.velocities[axis];
+  }
+  for (const std::string& unit : found.speed_units) {
+    drive.revolutions.push_back(revolutions(unit));
+  }
+  return drive;
+}
+
+study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle, const log::Dataset& data,
+                                    const study::Split& split, const DriveColumns& columns,
+                                    Frame frame, std::optional<int> only) {
+  const int wanted = data.configurations[study::training_rows(data, split, only).front()];
+  const auto of_configuration = [&](std::vector<std::size_t> rows) {
+    std::erase_if(rows, [&](std::size_t row) { return data.configurations[row] != wanted; });
+    return rows;
+  };
+  study::RecordedDrive drive =
+      drive_of(vehicle, data, of_configuration(split.held_out), columns, frame);
+  drive.rows_text = "held-out rows";
+  if (!has_minute(drive)) {
+    std::vector<std::size_t> all(data.rows());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    drive = drive_of(vehicle, data, of_configuration(std::move(all)), columns, frame);
+    drive.rows_text = "all rows, those of the identification among them";
+  }
+  return drive;
+}
 
 IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame frame,
                                      const std::optional<VehicleParameters>& base,
@@ -146,25 +264,29 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
   }
   IdentifiedVehicle result;
   result.speed_unit = "as the log's units say";
+  result.identified = {true, true, false, false, false, true};
   for (std::size_t i = 0; i < plane.thrusters.size(); ++i) {
-    PlanarThruster thruster = plane.thrusters[i];
+    IdentifiedThruster thruster = in_six(plane.thrusters[i]);
     const double turns = revolutions(found.speed_units[i]);
     if (found.speed_units[i].empty()) {
       result.speed_unit = "taken for rev/s: the log's units don't say";
     }
     const ParameterState reverse = found.fit.parameters[PlanarPlace::thruster(i) + 1].state;
-    result.reverse_told.push_back(reverse != ParameterState::not_told);
-    if (!result.reverse_told.back()) {
+    thruster.reverse_told = reverse != ParameterState::not_told;
+    if (!thruster.reverse_told) {
       thruster.reverse = thruster.forward;
     }
     thruster.forward /= turns * turns;
     thruster.reverse /= turns * turns;
+    thruster.greatest = found.greatest_speeds[i] * turns;
+    const auto lag = std::ranges::find(found.lags, thruster.name, &LagInterval::command);
+    thruster.lag_s = lag == found.lags.end() ? 0.0 : lag->lag_s;
     result.thrusters.push_back(thruster);
-    result.greatest_rps.push_back(found.greatest_speeds[i] * turns);
   }
   const double mass_kg = found.mass_kg.value_or(plane.surge_inertia /
                                                 (1.0 + study::kTuning.identification.added_share));
   result.body = base.value_or(assumed(plane, mass_kg));
+  const bool has_verticals = base && vehicle::drives_in_plane(*base);
   result.body.mass_kg = mass_kg;
   result.rest = base
                     ? "heave, roll, pitch, buoyancy, rotors and hold as in " + base_file
@@ -173,10 +295,22 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
   if (!found.mass_kg) {
     result.rest += "; the rigid body's mass assumed, surge inertia / 1.2";
   }
-  result.constant_force = plane.constant_force;
+  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    result.constant_force(kOfSix[axis]) = plane.constant_force[axis];
+  }
   set_plane(plane, result.body);
-  fill_slots(result, base.has_value());
+  fill_slots(result, has_verticals);
   return result;
+}
+
+vehicle::Vector6 usual_speed(const study::RecordedDrive& drive) {
+  vehicle::Vector6 thirds = vehicle::Vector6::Zero();
+  vehicle::Vector6 fourths = vehicle::Vector6::Zero();
+  for (const vehicle::Vector6& velocity : drive.velocities) {
+    thirds.array() += velocity.array().abs().cube();
+    fourths.array() += velocity.array().square().square();
+  }
+  return (thirds.array() > 0.0).select(fourths.array() / thirds.array(), 0.0).matrix();
 }
 
 }  // namespace kelpie::format

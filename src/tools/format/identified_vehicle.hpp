@@ -1,26 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "kelpie/motion/attitude.hpp"
 #include "kelpie/motion/frame.hpp"
+#include "log/dataset.hpp"
+#include "study/certificate.hpp"
 #include "study/identification.hpp"
 #include "vehicle/parameters.hpp"
 
 namespace kelpie::format {
+
+/// A fixed thruster with the force K± n|n| along `direction`.
+struct IdentifiedThruster {
+  std::string name{};
+  double forward = 0.0;  ///< N/(rev/s)²
+  double reverse = 0.0;
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  double greatest_rps = 0.0;  ///< in the log, absolute
+  bool reverse_told = false;  ///< else `reverse` equals `forward`
+  double lag_s = 0.0;         ///< time constant; 0: none was found
+
+  double thrust(double speed_rps) const;           ///< N
+  vehicle::Vector6 force(double speed_rps) const;  ///< about the origin
+};
 
 /// An identified vehicle in six degrees of freedom, for simulators: SI, frame FRD, about the origin
 /// of the measured velocities. Quantities outside the plane come from a base vehicle or are
 /// assumed.
 struct IdentifiedVehicle {
   vehicle::VehicleParameters body{};  ///< thrusters only where `has_slots`
-  /// As fitted; thrusts per (rev/s)².
-  std::vector<PlanarThruster> thrusters{};
-  std::vector<double> greatest_rps{};  ///< of thrusters
-  std::vector<bool> reverse_told{};    ///< of thrusters; else reverse equals forward
-  PlanarVector constant_force{};
+  std::vector<IdentifiedThruster> thrusters{};
+  std::array<bool, 6> identified{};                            ///< axes that the log shows
+  vehicle::Vector6 usual_speed = vehicle::Vector6::Zero();     ///< for vehicle::quadratic_alone()
+  vehicle::Vector6 constant_force = vehicle::Vector6::Zero();  ///< in the log, FRD
   std::string rest{};        ///< source of heave, roll, pitch and the split of masses
   std::string speed_unit{};  ///< "rev/s", and whether the log said so
   bool has_slots = false;    ///< two thrusters along surge, one along sway: body.thrusters are set
@@ -31,5 +49,26 @@ struct IdentifiedVehicle {
 IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame frame,
                                      const std::optional<vehicle::VehicleParameters>& base,
                                      const std::string& base_file);
+
+/// What a log shows of a vehicle: places among the inputs.
+struct DriveColumns {
+  std::array<std::optional<std::size_t>, 6> velocities{};
+  Attitude attitude{};
+  std::vector<std::size_t> thrusters{};  ///< in the order of IdentifiedVehicle::thrusters
+  std::vector<double> revolutions{};     ///< rev/s per unit of each thruster's input
+};
+
+/// Of an identification in the plane.
+DriveColumns drive_columns(const study::PlanarColumns& columns, const study::Identification& found);
+
+/// The rows of a log as a drive of the vehicle, for certify(): the held-out rows of the
+/// configuration `only` (default: the first) where they have a stretch of a minute, else all its
+/// rows. Axes without a velocity are at rest, a vehicle without an attitude is level.
+study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle, const log::Dataset& data,
+                                    const study::Split& split, const DriveColumns& columns,
+                                    Frame frame, std::optional<int> only);
+
+/// For vehicle::quadratic_alone(): Σ v⁴ / Σ |v|³ of each axis; 0 on axes at rest.
+vehicle::Vector6 usual_speed(const study::RecordedDrive& drive);
 
 }  // namespace kelpie::format

@@ -15,7 +15,7 @@ namespace kelpie::format {
 const char* state_word(ParameterState state);
 
 /// Half of the 90 % interval of a parameter.
-double half_width90(const PlanarParameter& parameter);
+double half_width90(const FittedParameter& parameter);
 
 /// The unit of a parameter of a fit: SI with a scale, else divided by kg.
 std::string parameter_unit(const study::Identification& found, std::size_t place);
@@ -43,11 +43,31 @@ std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& so
 /// and Thruster. FLU.
 std::string gazebo_sdf(const IdentifiedVehicle& vehicle, const std::string& source);
 
-/// Hydrodynamic model and thrusters for UUV Simulator, as xacro. FLU, damping negative.
+/// The same for Gazebo without <fluid_added_mass>: added mass as derivatives of the plugin
+/// Hydrodynamics. FLU, all coefficients negative.
+std::string gazebo_plugin_sdf(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// Hydrodynamic model and thrusters for UUV Simulator and Plankton, as xacro. Positions FLU;
+/// added mass FRD, positive; damping negative.
 std::string uuv_xacro(const IdentifiedVehicle& vehicle, const std::string& source);
 
 /// Mass properties and thrusters for Stonefish; added mass and drag, which Stonefish takes from the
 /// geometry, in comments. FRD.
 std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// Controller parameters of blue: FRD, derivatives (negative), thruster matrix.
+std::string blue_yaml(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// Model of motion of orca4: drag coefficients (positive) of a BlueROV2's areas.
+std::string orca4_yaml(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// Matrices for Fossen's MSS (MATLAB, Octave): FRD, all positive.
+std::string mss_m(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// The same for the Python Vehicle Simulator.
+std::string python_vehicle(const IdentifiedVehicle& vehicle, const std::string& source);
+
+/// Parameters of ArduPilot's SITL: net buoyancy.
+std::string ardupilot_parm(const IdentifiedVehicle& vehicle, const std::string& source);
 
 }  // namespace kelpie::format

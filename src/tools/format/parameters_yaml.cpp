@@ -23,7 +23,7 @@ std::string number(fmt::format_string<double> format, double value) {
 }
 
 std::string parameter_line(const study::Identification& found, std::size_t place) {
-  const PlanarParameter& parameter = found.fit.parameters[place];
+  const FittedParameter& parameter = found.fit.parameters[place];
   const std::string head =
       fmt::format("  {}: {{unit: {}, state: {}", quoted(parameter.name),
                   quoted(parameter_unit(found, place)), quoted(state_word(parameter.state)));
@@ -100,7 +100,7 @@ const char* state_word(ParameterState state) {
   return found == kWords.end() ? "not told by the log" : found->second;
 }
 
-double half_width90(const PlanarParameter& parameter) {
+double half_width90(const FittedParameter& parameter) {
   constexpr double kNormal90 = 1.645;
   return kNormal90 * parameter.error;
 }

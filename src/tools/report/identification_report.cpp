@@ -12,6 +12,7 @@
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "format/parameters.hpp"
+#include "report/certificate_table.hpp"
 #include "report/tuning.hpp"
 
 namespace kelpie::report {
@@ -23,7 +24,7 @@ chart::TextTable parameters_view(const study::Identification& found) {
   chart::TextTable table{
       "Parameters", {"parameter", "value", "90 % interval", "± %", "unit", ""}, {}};
   for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
-    const PlanarParameter& parameter = found.fit.parameters[i];
+    const FittedParameter& parameter = found.fit.parameters[i];
     const std::string name = chart::shortened(parameter.name, chart::kLongestName);
     const std::string unit = format::parameter_unit(found, i);
     if (parameter.state == ParameterState::not_told) {
@@ -47,7 +48,7 @@ chart::TextTable parameters_view(const study::Identification& found) {
 std::string parameter_bars(const study::Identification& found) {
   std::vector<chart::IntervalRow> rows;
   for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
-    const PlanarParameter& parameter = found.fit.parameters[i];
+    const FittedParameter& parameter = found.fit.parameters[i];
     if (parameter.state == ParameterState::not_told || !std::isfinite(parameter.value)) {
       continue;
     }
@@ -118,7 +119,7 @@ chart::TextTable held_out_view(const study::Identification& found) {
 chart::TextTable correlations_view(const study::Identification& found) {
   chart::TextTable table{"Strongest correlations of errors", {"parameters", "correlation"}, {}};
   std::vector<std::pair<double, std::string>> pairs;
-  const std::vector<PlanarParameter>& parameters = found.fit.parameters;
+  const std::vector<FittedParameter>& parameters = found.fit.parameters;
   for (std::size_t a = 0; a < parameters.size(); ++a) {
     for (std::size_t b = a + 1; b < parameters.size(); ++b) {
       const double correlation = found.fit.correlation(a, b);
@@ -180,7 +181,7 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
       break;
   }
   std::vector<std::string> not_told;
-  for (const PlanarParameter& parameter : found.fit.parameters) {
+  for (const FittedParameter& parameter : found.fit.parameters) {
     if (parameter.state == ParameterState::not_told) {
       not_told.push_back(parameter.name);
     }
@@ -202,6 +203,7 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
               : "the terms don't explain it"));
     }
   }
+  std::ranges::copy(certificate_remarks(found.certificates), std::back_inserter(remarks));
   return remarks;
 }
 
@@ -221,6 +223,9 @@ std::string identification_table(const study::Identification& found) {
   if (!found.held_out.times_s.empty()) {
     text += chart::table_text(held_out_view(found));
   }
+  if (!found.certificates.engines.empty()) {
+    text += chart::table_text(certificate_view(found.certificates));
+  }
   for (const std::string& remark : identification_remarks(found)) {
     text += chart::wrapped(chart::printable(remark)) + "\n";
   }
@@ -231,7 +236,7 @@ std::string identification_html(const study::Identification& found) {
   const std::string log = std::filesystem::path(found.source).filename().string();
   const std::string bars = parameter_bars(found);
   const auto told = static_cast<std::size_t>(
-      std::ranges::count_if(found.fit.parameters, [](const PlanarParameter& parameter) {
+      std::ranges::count_if(found.fit.parameters, [](const FittedParameter& parameter) {
         return parameter.state != ParameterState::not_told && std::isfinite(parameter.value);
       }));
   std::string opening = chart::paragraph("over", "Parameters identified from " + log) +
@@ -264,6 +269,9 @@ std::string identification_html(const study::Identification& found) {
       {{"Parameters",
         bars + chart::folded("All numbers", chart::html_table(parameters_view(found)))},
        {"Held-out rows", course},
+       {"Simulators", found.certificates.engines.empty()
+                          ? ""
+                          : chart::html_table(certificate_view(found.certificates))},
        {"Time constants of actuators", chart::html_table(actuators_view(found))},
        {"Correlations", chart::html_table(correlations_view(found)), true},
        data});

@@ -182,7 +182,7 @@ std::string rollout_verdict(const study::OpenLoopResult& result) {
 }
 
 std::string identification_verdict(const study::Identification& found) {
-  const auto told = std::ranges::count_if(found.fit.parameters, [](const PlanarParameter& one) {
+  const auto told = std::ranges::count_if(found.fit.parameters, [](const FittedParameter& one) {
     return one.state != ParameterState::not_told;
   });
   std::string text = fmt::format("Identified {} of {} parameters from {} rows of {}\n", told,

@@ -69,7 +69,7 @@ auto of_log(const log::Dataset& data, Estimate estimate) {
 // A log of commands that go with no force (pulses far from 0, a vehicle at rest) has an estimate
 // that is no number.
 void require_numbers(const log::Dataset& data, const PlanarFit& fit) {
-  for (const PlanarParameter& parameter : fit.parameters) {
+  for (const FittedParameter& parameter : fit.parameters) {
     if (parameter.state != ParameterState::not_told &&
         !(std::isfinite(parameter.value) && std::isfinite(parameter.error))) {
       throw InputError({.file = data.source, .line = 0, .field = parameter.name},

@@ -12,6 +12,7 @@
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "log/dataset.hpp"
+#include "study/certificate.hpp"
 #include "study/split.hpp"
 
 namespace kelpie::study {
@@ -51,6 +52,7 @@ struct Identification {
   HeldOutFit held_out{};                   ///< empty without held-out rows
   std::string alignment{};                 ///< of the commands, in words; empty: unknown
   std::vector<LagInterval> lags{};         ///< time constants of actuators
+  CertificateList certificates{};          ///< empty without a scale
 };
 
 /// Roles of a log's columns in identification.

@@ -13,4 +13,10 @@ namespace kelpie::study {
 /// rdot, and the true accelerations udot_true, vdot_true, rdot_true.
 log::Table log_table(std::span<const vehicle::LogRow> rows, const std::string& source);
 
+/// The rows of a simulation of six axes: t, conf, u, v, w, p, q, r, phi, theta, psi, the commands
+/// by the names of `vehicle`'s thrusters, voltage where the vehicle has a battery, udot, vdot,
+/// wdot, pdot, qdot, rdot, and the true accelerations udot_true, … Names have units ("m1 [us]").
+log::Table log_table(std::span<const vehicle::SixAxisRow> rows,
+                     const vehicle::VehicleParameters& vehicle, const std::string& source);
+
 }  // namespace kelpie::study

@@ -14,7 +14,8 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
       .finished();
 }
 
-// Mass matrix about the origin of a rigid body given about its centre of gravity.
+}  // namespace
+
 Matrix6 rigid_body_mass(double mass, const Eigen::Vector3d& centre,
                         const Eigen::Matrix3d& inertia) {
   const Eigen::Matrix3d arm = skew(centre);
@@ -25,8 +26,6 @@ Matrix6 rigid_body_mass(double mass, const Eigen::Vector3d& centre,
   matrix.bottomRightCorner<3, 3>() = inertia - mass * arm * arm;
   return matrix;
 }
-
-}  // namespace
 
 Plant make_plant(const VehicleParameters& vehicle, const Configuration& configuration) {
   const Payload& payload = configuration.payload;
@@ -47,11 +46,14 @@ Plant make_plant(const VehicleParameters& vehicle, const Configuration& configur
                            buoyancy * vehicle.centre_of_buoyancy_m +
                            payload_net * payload.position_m;
 
-  plant.thrusters = vehicle.thrusters;
-  for (std::size_t i = 0; i < kThrusterCount; ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    plant.thrust_axes.col(column) =
-        configuration.effectiveness(column) * thrust_axis(vehicle.thrusters[i]);
+  const auto count = static_cast<Eigen::Index>(vehicle.thrusters.size());
+  plant.forward.resize(count);
+  plant.reverse.resize(count);
+  plant.thrust_axes = thrust_axes(vehicle.thrusters);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    plant.forward(i) = vehicle.thrusters[static_cast<std::size_t>(i)].forward;
+    plant.reverse(i) = vehicle.thrusters[static_cast<std::size_t>(i)].reverse;
+    plant.thrust_axes.col(i) *= configuration.effectiveness(i);
   }
   plant.pull << configuration.pull_n, configuration.pull_position_m.cross(configuration.pull_n);
   return plant;
@@ -118,12 +120,13 @@ Vector6 Dynamics::acceleration(const Eigen::Quaterniond& attitude, const Vector6
 }
 
 Vector6 Dynamics::thruster_forces(const RotorSpeeds& speeds_rps) const {
-  RotorSpeeds forces;
-  for (std::size_t i = 0; i < kThrusterCount; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    forces(row) = thrust(plant_.thrusters[i], speeds_rps(row));
+  Vector6 forces = Vector6::Zero();
+  for (Eigen::Index i = 0; i < speeds_rps.size(); ++i) {
+    const double speed = speeds_rps(i);
+    const double coefficient = speed < 0.0 ? plant_.reverse(i) : plant_.forward(i);
+    forces += coefficient * speed * std::abs(speed) * plant_.thrust_axes.col(i);
   }
-  return plant_.thrust_axes * forces;
+  return thrust_factor_ * forces;
 }
 
 Vector6 Dynamics::restoring_forces(const Eigen::Vector3d& down) const {

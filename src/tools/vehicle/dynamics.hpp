@@ -2,14 +2,13 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
 
 #include "vehicle/parameters.hpp"
 
 namespace kelpie::vehicle {
 
 /// The coefficients of
-///   M ν̇_r + C(ν_r) ν_r + (D_L + D_Q |ν_r|) ν_r + g(η) = Σ_i e_i K±_i n_i|n_i| a_i + τ_pull
+///   M ν̇_r + C(ν_r) ν_r + (D_L + D_Q |ν_r|) ν_r + g(η) = f Σ_i e_i K±_i n_i|n_i| a_i + τ_pull
 /// for a vehicle in one configuration. The equation is linear in every coefficient.
 struct Plant {
   Matrix6 mass = Matrix6::Zero();  ///< rigid body and added mass, about the origin
@@ -17,10 +16,15 @@ struct Plant {
   Vector6 quadratic_damping = Vector6::Zero();
   double net_weight_n = 0.0;                                   ///< weight − buoyancy
   Eigen::Vector3d weight_moment_nm = Eigen::Vector3d::Zero();  ///< W r_g − B r_b
-  std::array<Thruster, kThrusterCount> thrusters{};
-  Eigen::Matrix<double, 6, kThrusterCount> thrust_axes;  ///< columns e_i a_i
-  Vector6 pull = Vector6::Zero();                        ///< constant in the body
+  RotorSpeeds forward;                                         ///< K+ of each thruster
+  RotorSpeeds reverse;                                         ///< K− of each thruster
+  ThrustAxes thrust_axes;                                      ///< columns e_i a_i
+  Vector6 pull = Vector6::Zero();                              ///< constant in the body
 };
+
+/// The mass matrix about the origin of a rigid body that is given about its centre of gravity.
+Matrix6 rigid_body_mass(double mass, const Eigen::Vector3d& centre,
+                        const Eigen::Matrix3d& inertia);
 
 /// Ensures: the mass matrix is symmetric if the added masses are. A payload of negative mass may
 /// make the matrix indefinite, see is_positive_definite().
@@ -52,6 +56,10 @@ class Dynamics {
   Vector6 acceleration(const Eigen::Quaterniond& attitude, const Vector6& velocity,
                        const RotorSpeeds& speeds_rps) const;
 
+  /// f: factor of the supply voltage on every thrust; 1 at the start.
+  void set_thrust_factor(double factor) { thrust_factor_ = factor; }
+  double thrust_factor() const { return thrust_factor_; }
+
   const Plant& plant() const { return plant_; }
 
  private:
@@ -61,6 +69,7 @@ class Dynamics {
   Plant plant_;
   Matrix6 inverse_mass_;
   Eigen::Vector3d current_;
+  double thrust_factor_ = 1.0;
 };
 
 }  // namespace kelpie::vehicle

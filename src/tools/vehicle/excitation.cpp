@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vehicle/excitation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -34,15 +35,13 @@ Eigen::Matrix3d mixing(const ExcitationSettings& settings) {
 }  // namespace
 
 ExcitationMode excitation_mode_from(const std::string& name) {
-  if (name == "independent") {
-    return ExcitationMode::independent;
+  const std::vector<std::string> names = {"independent", "correlated", "prbs", "steps", "pilot"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError("'" + name + "' is no mode of excitation; there are " +
+                     join_text(names, ", ") + did_you_mean(name, names));
   }
-  if (name == "correlated") {
-    return ExcitationMode::correlated;
-  }
-  const std::vector<std::string> names = {"independent", "correlated"};
-  throw InputError("'" + name + "' is no mode of excitation; there are independent and correlated" +
-                   did_you_mean(name, names));
+  return static_cast<ExcitationMode>(found - names.begin());
 }
 
 void ExcitationSettings::validate() const {
@@ -53,6 +52,11 @@ void ExcitationSettings::validate() const {
               " s, shortest first");
   require(correlation >= -1.0 && correlation <= 1.0, "excitation.correlation",
           "must be between -1 and 1");
+  require(
+      effort.allFinite() && effort.minCoeff() >= 0.0 && (in_plane() || effort.maxCoeff() > 0.0),
+      "excitation.effort",
+      "must be six numbers of N and N m, none negative; prbs, steps and pilot need one above 0");
+  require(dither >= 0.0 && dither <= 1.0, "excitation.dither", "must be between 0 and 1");
 }
 
 Oscillator::Oscillator(const ExcitationSettings& settings, RandomStream stream)

@@ -7,13 +7,17 @@
 #include <string>
 
 #include "kelpie/core/random.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::vehicle {
 
-/// Dependence between the commands of the lateral thrusters.
+/// How the thrusters are driven.
 enum class ExcitationMode {
-  independent,  ///< a sinusoid per lateral thruster
-  correlated,   ///< surge thrusters with the given correlation
+  independent,  ///< in the plane: a sinusoid per lateral thruster
+  correlated,   ///< in the plane: surge thrusters with the given correlation
+  prbs,         ///< Pilot: wishes of −1 or 1
+  steps,        ///< Pilot: wishes between −1 and 1
+  pilot,        ///< Pilot: steps, approached as by a hand on a stick
 };
 
 ExcitationMode excitation_mode_from(const std::string& name);  ///< Throws InputError.
@@ -21,10 +25,16 @@ ExcitationMode excitation_mode_from(const std::string& name);  ///< Throws Input
 /// Commands of the thrusters.
 struct ExcitationSettings {
   ExcitationMode mode = ExcitationMode::independent;
-  double shortest_period_s = 20.0;
+  double shortest_period_s = 20.0;  ///< of a cycle, or between two wishes
   double longest_period_s = 70.0;
   double correlation = 0.78;  ///< of the surge thrusters' commands, in [-1, 1]; mode correlated
+  Vector6 effort = Vector6::Zero();  ///< of a wish of 1 on each axis, N and N m; modes of Pilot
+  double dither = 0.0;  ///< of each command by itself, share of the greatest; modes of Pilot
 
+  /// Whether the three lateral thrusters are driven, and the vertical thrusters hold the vehicle.
+  bool in_plane() const {
+    return mode == ExcitationMode::independent || mode == ExcitationMode::correlated;
+  }
   /// Throws InputError whose field is the key in a scenario file ("excitation.period_s").
   void validate() const;
 };

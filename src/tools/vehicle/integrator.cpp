@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vehicle/integrator.hpp"
 
+#include <cmath>
+
 namespace kelpie::vehicle {
 namespace {
 
 // position, quaternion (x, y, z, w as Eigen stores it), velocity, rotors
-using StateVector = Eigen::Matrix<double, 13 + kThrusterCount, 1>;
+constexpr int kBodyStates = 13;
+using StateVector =
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kBodyStates + kMostThrusters, 1>;
 
 StateVector pack(const State& state) {
-  return (StateVector() << state.position_m, state.attitude.coeffs(), state.velocity,
-          state.rotors_rps)
-      .finished();
+  StateVector x(kBodyStates + state.rotors_rps.size());
+  x << state.position_m, state.attitude.coeffs(), state.velocity, state.rotors_rps;
+  return x;
 }
 
 State unpack(const StateVector& x) {
@@ -18,7 +22,7 @@ State unpack(const StateVector& x) {
   state.position_m = x.segment<3>(0);
   state.attitude.coeffs() = x.segment<4>(3);
   state.velocity = x.segment<6>(7);
-  state.rotors_rps = x.segment<kThrusterCount>(13);
+  state.rotors_rps = x.tail(x.size() - kBodyStates);
   return state;
 }
 
@@ -33,8 +37,23 @@ StateVector rate(const Dynamics& dynamics, const RotorDrive& drive, const StateV
   derivative.velocity = dynamics.acceleration(state.attitude, state.velocity, state.rotors_rps);
   if (drive.lag_s > 0.0) {
     derivative.rotors_rps = (drive.commands_rps - state.rotors_rps) / drive.lag_s;
+    if (drive.rate > 0.0) {
+      derivative.rotors_rps =
+          derivative.rotors_rps.cwiseMax(-drive.rate).cwiseMin(drive.rate).eval();
+    }
+  } else {
+    derivative.rotors_rps = RotorSpeeds::Zero(state.rotors_rps.size());
   }
   return pack(derivative);
+}
+
+// Speeds of rotors without lag after a step.
+RotorSpeeds followed(const RotorSpeeds& speeds, const RotorDrive& drive, double step_s) {
+  if (drive.rate == 0.0) {
+    return drive.commands_rps;
+  }
+  const double most = drive.rate * std::abs(step_s);
+  return speeds + (drive.commands_rps - speeds).cwiseMax(-most).cwiseMin(most);
 }
 
 }  // namespace
@@ -46,9 +65,13 @@ bool State::is_finite() const {
 
 State rk4_step(const Dynamics& dynamics, const State& state, const RotorDrive& drive,
                double step_s) {
-  StateVector x = pack(state);
+  State start = state;
+  if (start.rotors_rps.size() == 0) {
+    start.rotors_rps = RotorSpeeds::Zero(drive.commands_rps.size());
+  }
+  StateVector x = pack(start);
   if (drive.lag_s == 0.0) {
-    x.tail<kThrusterCount>() = drive.commands_rps;
+    x.tail(x.size() - kBodyStates) = followed(start.rotors_rps, drive, step_s);
   }
   const StateVector k1 = rate(dynamics, drive, x);
   const StateVector k2 = rate(dynamics, drive, x + step_s / 2.0 * k1);

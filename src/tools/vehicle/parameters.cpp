@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/hold.hpp"
+#include "vehicle/simulator.hpp"
+#include "vehicle/tuning.hpp"
 
 namespace kelpie::vehicle {
 namespace {
@@ -29,6 +33,34 @@ void validate_thruster(const Thruster& thruster, const std::string& field) {
   require(thruster.position_m.allFinite(), field + ".position_m", "must be finite");
   require(std::abs(thruster.direction.norm() - 1.0) < 1e-6, field + ".direction",
           "must be of length 1");
+  require(thruster.dead_band >= 0.0 && thruster.dead_band < 1.0, field + ".dead_band",
+          "must be at least 0 and below 1, a share of the greatest command");
+}
+
+void validate_rotors(const VehicleParameters& vehicle) {
+  require(not_negative(vehicle.rotor_lag_s), "rotors.lag_s", "must not be negative");
+  require(not_negative(vehicle.rotor_rate), "rotors.rate", "must not be negative; 0: any rate");
+  require(vehicle.rotor_delay_s == 0.0 || (ticks_in(vehicle.rotor_delay_s) > 0 &&
+                                           vehicle.rotor_delay_s <= kTuning.longest_delay_s),
+          "rotors.delay_s",
+          "must be a whole number of steps of " + number_text(kTickS) + " s, at most " +
+              number_text(kTuning.longest_delay_s) + " s");
+}
+
+void validate_battery(const BatteryParameters& battery) {
+  if (battery.nominal_v == 0.0) {
+    return;
+  }
+  require(positive(battery.nominal_v), "battery.nominal_v", "must be above zero");
+  require(positive(battery.full_v), "battery.full_v", "must be above zero");
+  require(positive(battery.empty_v) && battery.empty_v <= battery.full_v, "battery.empty_v",
+          "must be above zero and at most full_v");
+  require(not_negative(battery.resistance_ohm), "battery.resistance_ohm", "must not be negative");
+  require(positive(battery.capacity_ah), "battery.capacity_ah", "must be above zero");
+  require(not_negative(battery.thruster_w), "battery.thruster_w", "must not be negative");
+  require(not_negative(battery.idle_w), "battery.idle_w", "must not be negative");
+  require(battery.exponent >= 0.0 && battery.exponent <= 3.0, "battery.exponent",
+          "must be between 0 and 3");
 }
 
 void validate_hold(const HoldGains& hold) {
@@ -37,6 +69,8 @@ void validate_hold(const HoldGains& hold) {
   require(not_negative(hold.depth_d), "hold.depth_d", "must not be negative");
   require(not_negative(hold.pitch_p), "hold.pitch_p", "must not be negative");
   require(not_negative(hold.pitch_d), "hold.pitch_d", "must not be negative");
+  require(not_negative(hold.roll_p), "hold.roll_p", "must not be negative");
+  require(not_negative(hold.roll_d), "hold.roll_d", "must not be negative");
 }
 
 }  // namespace
@@ -55,12 +89,17 @@ void VehicleParameters::validate() const {
   require(not_negative(linear_damping), "hydrodynamics.linear_damping", "must not be negative");
   require(not_negative(quadratic_damping), "hydrodynamics.quadratic_damping",
           "must not be negative");
-  require(not_negative(rotor_lag_s), "rotors.lag_s", "must not be negative");
-  for (std::size_t i = 0; i < kThrusterCount; ++i) {
-    validate_thruster(thrusters[i], "thrusters." + thruster_names()[i]);
+  validate_rotors(*this);
+  require(!thrusters.empty() && thrusters.size() <= kMostThrusters, "thrusters",
+          "must be 1 to " + std::to_string(kMostThrusters));
+  for (const Thruster& thruster : thrusters) {
+    validate_thruster(thruster, "thrusters." + thruster.name);
   }
-  require(std::abs(vertical_allocation(*this).determinant()) > 1e-6, "thrusters.vertical_rear",
-          "the two vertical thrusters must be able to hold heave and pitch independently");
+  if (drives_in_plane(*this)) {
+    require(std::abs(vertical_allocation(*this).determinant()) > 1e-6, "thrusters.vertical_rear",
+            "the two vertical thrusters must be able to hold heave and pitch independently");
+  }
+  validate_battery(battery);
   validate_hold(hold);
 }
 
@@ -82,10 +121,57 @@ void Configuration::validate(const std::string& field) const {
           field + ".sensors.frozen", "must be 0 or 1 for each of surge, sway, yaw");
 }
 
-const std::array<std::string, kThrusterCount>& thruster_names() {
-  static const std::array<std::string, kThrusterCount> names = {"surge_left", "surge_right", "sway",
-                                                                "vertical_front", "vertical_rear"};
+CommandUnit command_unit_from(const std::string& name) {
+  const std::vector<std::string> names = {"speed", "share", "pwm"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError("'" + name + "' is no kind of command; there are speed, share and pwm" +
+                     did_you_mean(name, names));
+  }
+  return static_cast<CommandUnit>(found - names.begin());
+}
+
+const std::array<std::string, kPlanarThrusterCount>& planar_thruster_names() {
+  static const std::array<std::string, kPlanarThrusterCount> names = {
+      "surge_left", "surge_right", "sway", "vertical_front", "vertical_rear"};
   return names;
+}
+
+bool drives_in_plane(const VehicleParameters& vehicle) {
+  return vehicle.command_unit == CommandUnit::speed &&
+         std::ranges::equal(vehicle.thrusters, planar_thruster_names(), {}, &Thruster::name);
+}
+
+void require_plane(const VehicleParameters& vehicle) {
+  if (!drives_in_plane(vehicle)) {
+    std::vector<std::string> names;
+    std::ranges::transform(vehicle.thrusters, std::back_inserter(names), &Thruster::name);
+    const auto& wanted = planar_thruster_names();
+    throw InputError("a drive in the plane needs the thrusters " + join_text(wanted, ", ") +
+                     ", commanded by speed; this vehicle has " + join_text(names, ", "));
+  }
+}
+
+double command_in_unit(CommandUnit unit, double command) {
+  return unit == CommandUnit::pwm ? kTuning.neutral_pulse_us + kTuning.pulse_per_share_us * command
+                                  : command;
+}
+
+double speed_for_command(const Thruster& thruster, double command) {
+  if (thruster.dead_band == 0.0) {
+    return command;  // exact
+  }
+  const double band = thruster.dead_band * thruster.max_speed_rps;
+  const double beyond = std::max(0.0, std::abs(command) - band) / (1.0 - thruster.dead_band);
+  return std::copysign(beyond, command);
+}
+
+double command_for_speed(const Thruster& thruster, double speed_rps) {
+  if (speed_rps == 0.0) {
+    return 0.0;
+  }
+  const double band = thruster.dead_band * thruster.max_speed_rps;
+  return std::copysign(band + std::abs(speed_rps) * (1.0 - thruster.dead_band), speed_rps);
 }
 
 double thrust(const Thruster& thruster, double speed_rps) {
@@ -102,6 +188,14 @@ double speed_for_thrust(const Thruster& thruster, double force_n) {
 Vector6 thrust_axis(const Thruster& thruster) {
   return (Vector6() << thruster.direction, thruster.position_m.cross(thruster.direction))
       .finished();
+}
+
+ThrustAxes thrust_axes(const std::vector<Thruster>& thrusters) {
+  ThrustAxes axes(6, static_cast<Eigen::Index>(thrusters.size()));
+  for (std::size_t i = 0; i < thrusters.size(); ++i) {
+    axes.col(static_cast<Eigen::Index>(i)) = thrust_axis(thrusters[i]);
+  }
+  return axes;
 }
 
 }  // namespace kelpie::vehicle

@@ -3,10 +3,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <string>
+#include <vector>
 
+#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/simulator.hpp"
@@ -58,8 +62,27 @@ void validate_phase(const Scenario& scenario, std::size_t index) {
 
 }  // namespace
 
+LogKind log_kind_from(const std::string& name) {
+  const std::vector<std::string> names = {"planar", "six_axes"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError("'" + name + "' is no kind of log; there are " + join_text(names, ", ") +
+                     did_you_mean(name, names));
+  }
+  return static_cast<LogKind>(found - names.begin());
+}
+
 void Scenario::validate() const {
   vehicle.validate();
+  if (log == LogKind::planar || excitation.in_plane()) {
+    try {
+      require_plane(vehicle);
+    } catch (const InputError& error) {
+      throw InputError("vehicle", std::string(error.what()) +
+                                      "; other vehicles take log = \"six_axes\" and "
+                                      "excitation.mode prbs, steps or pilot");
+    }
+  }
   require(std::isfinite(rate_hz) && rate_hz > 0.0, "rate_hz", "must be above zero");
   require(ticks_in(1.0 / rate_hz) > 0, "rate_hz",
           fmt::format("must divide {} Hz, the rate of the simulation", kTicksPerSecond));
@@ -68,6 +91,11 @@ void Scenario::validate() const {
   require(!configurations.empty(), "configurations", "there must be at least one");
   require(!phases.empty(), "phases", "there must be at least one");
   for (std::size_t i = 0; i < configurations.size(); ++i) {
+    const SensorFault& sensors = configurations[i].sensors;
+    require(log == LogKind::planar ||
+                (sensors.scale.isOnes() && sensors.bias.isZero() && sensors.frozen.isZero()),
+            fmt::format("configurations[{}].sensors", i),
+            "works with log = \"planar\"; the log of six axes has no faults of sensors");
     validate_configuration(vehicle, configurations[i], fmt::format("configurations[{}]", i));
   }
   for (std::size_t i = 0; i < phases.size(); ++i) {

@@ -20,11 +20,20 @@ struct Phase {
   double ramp_s = 0.0;     ///< duration of the change from the configuration before
 };
 
+/// Columns of the log.
+enum class LogKind {
+  planar,  ///< surge, sway, yaw in FLU, speeds of the lateral rotors
+  six,     ///< six axes in FRD with attitude, commands of all thrusters, voltage
+};
+
+LogKind log_kind_from(const std::string& name);  ///< "planar" or "six_axes"; throws InputError.
+
 /// A vehicle, its configurations over time, its commands and its recording.
 struct Scenario {
   VehicleParameters vehicle;
   std::uint64_t seed = 1;
   double rate_hz = 1.0;  ///< rows per second
+  LogKind log = LogKind::planar;
   SensorNoise noise;
   Eigen::Vector3d current_m_s = Eigen::Vector3d::Zero();  ///< velocity of the water, NED
   ExcitationSettings excitation;

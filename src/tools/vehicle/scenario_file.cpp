@@ -2,6 +2,8 @@
 #include "vehicle/scenario_file.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -15,12 +17,19 @@
 namespace kelpie::vehicle {
 namespace {
 
-std::vector<std::string> thruster_keys() {
-  return {thruster_names().begin(), thruster_names().end()};
-}
-
 double number_or(const file::TomlNode& table, const std::string& key, double otherwise) {
   return table.has(key) ? table[key].number() : otherwise;
+}
+
+// What `make` turns the text into; what it throws is told with the value's place.
+template <typename Make>
+auto choice(const file::TomlNode& value, Make make) {
+  const std::string text = value.text();
+  try {
+    return make(text);
+  } catch (const InputError& error) {
+    value.refuse(error.what());
+  }
 }
 
 void read_body(const file::TomlNode& root, VehicleParameters& vehicle) {
@@ -39,25 +48,82 @@ void read_body(const file::TomlNode& root, VehicleParameters& vehicle) {
   vehicle.quadratic_damping = read_vector<6>(water["quadratic_damping"]);
 }
 
-void read_actuators(const file::TomlNode& root, VehicleParameters& vehicle) {
-  vehicle.rotor_lag_s = root["rotors"].table({"lag_s"})["lag_s"].number();
-  const file::TomlNode thrusters = root["thrusters"].table(thruster_keys());
-  for (std::size_t i = 0; i < kThrusterCount; ++i) {
-    const file::TomlNode section = thrusters[thruster_names()[i]].table(
-        {"forward", "reverse", "position_m", "direction", "max_speed_rps"});
-    vehicle.thrusters[i] = {.forward = section["forward"].number(),
-                            .reverse = section["reverse"].number(),
-                            .position_m = read_vector<3>(section["position_m"]),
-                            .direction = read_vector<3>(section["direction"]),
-                            .max_speed_rps = section["max_speed_rps"].number()};
+Thruster read_thruster(const file::TomlNode& section, CommandUnit unit) {
+  const bool is_speed = unit == CommandUnit::speed;
+  std::vector<std::string> keys = {"forward", "reverse", "position_m", "direction", "dead_band"};
+  if (is_speed) {
+    keys.emplace_back("max_speed_rps");
   }
-  const file::TomlNode hold =
-      root["hold"].table({"depth_p", "depth_i", "depth_d", "pitch_p", "pitch_d"});
-  vehicle.hold = {.depth_p = hold["depth_p"].number(),
-                  .depth_i = hold["depth_i"].number(),
-                  .depth_d = hold["depth_d"].number(),
-                  .pitch_p = hold["pitch_p"].number(),
-                  .pitch_d = hold["pitch_d"].number()};
+  section.table(keys);
+  return {.forward = section["forward"].number(),
+          .reverse = section["reverse"].number(),
+          .position_m = read_vector<3>(section["position_m"]),
+          .direction = read_vector<3>(section["direction"]),
+          .max_speed_rps = is_speed ? section["max_speed_rps"].number() : 1.0,
+          .dead_band = number_or(section, "dead_band", 0.0),
+          .name = section.key()};
+}
+
+// In the order of the file, but for the thrusters of a drive in the plane, which has its own.
+void read_thrusters(const file::TomlNode& root, VehicleParameters& vehicle) {
+  for (const file::TomlNode& section : root["thrusters"].members()) {
+    vehicle.thrusters.push_back(read_thruster(section, vehicle.command_unit));
+  }
+  const auto& planar = planar_thruster_names();
+  const auto place = [&](const Thruster& thruster) {
+    return std::ranges::find(planar, thruster.name) - planar.begin();
+  };
+  if (vehicle.thrusters.size() == planar.size() &&
+      std::ranges::all_of(vehicle.thrusters, [&](const Thruster& thruster) {
+        return place(thruster) < static_cast<std::ptrdiff_t>(planar.size());
+      })) {
+    std::ranges::sort(vehicle.thrusters, {}, place);
+  }
+}
+
+HoldGains read_hold(const file::TomlNode& hold) {
+  hold.table({"depth_p", "depth_i", "depth_d", "pitch_p", "pitch_d", "roll_p", "roll_d"});
+  return {.depth_p = hold["depth_p"].number(),
+          .depth_i = hold["depth_i"].number(),
+          .depth_d = hold["depth_d"].number(),
+          .pitch_p = hold["pitch_p"].number(),
+          .pitch_d = hold["pitch_d"].number(),
+          .roll_p = number_or(hold, "roll_p", 0.0),
+          .roll_d = number_or(hold, "roll_d", 0.0)};
+}
+
+BatteryParameters read_battery(const file::TomlNode& battery) {
+  battery.table({"nominal_v", "full_v", "empty_v", "resistance_ohm", "capacity_ah", "thruster_w",
+                 "idle_w", "exponent"});
+  BatteryParameters parameters{.nominal_v = battery["nominal_v"].number(),
+                               .full_v = battery["full_v"].number(),
+                               .empty_v = battery["empty_v"].number(),
+                               .resistance_ohm = battery["resistance_ohm"].number(),
+                               .capacity_ah = battery["capacity_ah"].number(),
+                               .thruster_w = battery["thruster_w"].number(),
+                               .idle_w = number_or(battery, "idle_w", 0.0),
+                               .exponent = battery["exponent"].number()};
+  if (parameters.nominal_v <= 0.0) {
+    battery["nominal_v"].refuse("must be above zero");
+  }
+  return parameters;
+}
+
+void read_actuators(const file::TomlNode& root, VehicleParameters& vehicle) {
+  const file::TomlNode rotors = root["rotors"].table({"command", "lag_s", "rate", "delay_s"});
+  if (rotors.has("command")) {
+    vehicle.command_unit = choice(rotors["command"], command_unit_from);
+  }
+  vehicle.rotor_lag_s = rotors["lag_s"].number();
+  vehicle.rotor_rate = number_or(rotors, "rate", 0.0);
+  vehicle.rotor_delay_s = number_or(rotors, "delay_s", 0.0);
+  read_thrusters(root, vehicle);
+  if (root.has("battery")) {
+    vehicle.battery = read_battery(root["battery"]);
+  }
+  if (drives_in_plane(vehicle) || root.has("hold")) {
+    vehicle.hold = read_hold(root["hold"]);
+  }
 }
 
 Payload read_payload(const file::TomlNode& section) {
@@ -87,14 +153,17 @@ SensorFault read_sensors(const file::TomlNode& section) {
   return fault;
 }
 
-Configuration read_configuration(const file::TomlNode& section) {
+Configuration read_configuration(const file::TomlNode& section,
+                                 const std::vector<Thruster>& thrusters) {
   Configuration configuration;
   configuration.name = section["name"].text();
   if (section.has("effectiveness")) {
-    const file::TomlNode effectiveness = section["effectiveness"].table(thruster_keys());
-    for (std::size_t i = 0; i < kThrusterCount; ++i) {
+    std::vector<std::string> names;
+    std::ranges::transform(thrusters, std::back_inserter(names), &Thruster::name);
+    const file::TomlNode effectiveness = section["effectiveness"].table(names);
+    for (std::size_t i = 0; i < names.size(); ++i) {
       configuration.effectiveness(static_cast<Eigen::Index>(i)) =
-          number_or(effectiveness, thruster_names()[i], 1.0);
+          number_or(effectiveness, names[i], 1.0);
     }
   }
   if (section.has("damping_factor")) {
@@ -116,12 +185,13 @@ Configuration read_configuration(const file::TomlNode& section) {
   return configuration;
 }
 
-std::vector<Configuration> read_configurations(const file::TomlNode& root) {
+std::vector<Configuration> read_configurations(const file::TomlNode& root,
+                                               const std::vector<Thruster>& thrusters) {
   std::vector<Configuration> configurations;
   for (const file::TomlNode& section :
        root["configurations"].tables({"name", "effectiveness", "damping_factor", "payload",
                                       "pull_n", "pull_position_m", "sensors"})) {
-    Configuration configuration = read_configuration(section);
+    Configuration configuration = read_configuration(section, thrusters);
     if (std::any_of(configurations.begin(), configurations.end(),
                     [&](const auto& other) { return other.name == configuration.name; })) {
       section["name"].refuse("'" + configuration.name + "' is the name of one before");
@@ -157,17 +227,6 @@ void read_phases(const file::TomlNode& root, Scenario& scenario) {
   }
 }
 
-// What `make` turns the text into; what it throws is told with the value's place.
-template <typename Make>
-auto choice(const file::TomlNode& value, Make make) {
-  const std::string text = value.text();
-  try {
-    return make(text);
-  } catch (const InputError& error) {
-    value.refuse(error.what());
-  }
-}
-
 ExcitationSettings read_excitation(const file::TomlNode& section) {
   ExcitationSettings settings;
   if (section.has("mode")) {
@@ -179,6 +238,18 @@ ExcitationSettings read_excitation(const file::TomlNode& section) {
     settings.longest_period_s = period(1);
   }
   settings.correlation = number_or(section, "correlation", settings.correlation);
+  settings.dither = number_or(section, "dither", settings.dither);
+  for (const char* const key : {"effort", "dither"}) {
+    if (settings.in_plane() && section.has(key)) {
+      section[key].refuse("has no effect in this mode; prbs, steps and pilot use it");
+    }
+  }
+  if (!settings.in_plane() && section.has("correlation")) {
+    section["correlation"].refuse("has no effect in this mode; correlated uses it");
+  }
+  if (section.has("effort")) {
+    settings.effort = read_vector<6>(section["effort"]);
+  }
   return settings;
 }
 
@@ -189,7 +260,7 @@ VehicleParameters read_vehicle(const std::filesystem::path& file) {
 }
 
 VehicleParameters read_vehicle(const file::TomlNode& root) {
-  root.table({"body", "hydrodynamics", "rotors", "thrusters", "hold"});
+  root.table({"body", "hydrodynamics", "rotors", "thrusters", "battery", "hold"});
   VehicleParameters vehicle;
   read_body(root, vehicle);
   read_actuators(root, vehicle);
@@ -199,12 +270,15 @@ VehicleParameters read_vehicle(const file::TomlNode& root) {
 
 Scenario read_scenario(const std::filesystem::path& file) {
   const file::TomlNode root = file::TomlNode::read(file);
-  root.table({"vehicle", "seed", "rate_hz", "noise", "current_m_s", "excitation", "configurations",
-              "phases"});
+  root.table({"vehicle", "seed", "rate_hz", "log", "noise", "current_m_s", "excitation",
+              "configurations", "phases"});
   Scenario scenario;
   scenario.rate_hz = root["rate_hz"].number();
   if (root.has("seed")) {
     scenario.seed = root["seed"].count();
+  }
+  if (root.has("log")) {
+    scenario.log = choice(root["log"], log_kind_from);
   }
   if (root.has("noise")) {
     scenario.noise = choice(root["noise"], noise_preset);
@@ -213,12 +287,9 @@ Scenario read_scenario(const std::filesystem::path& file) {
     scenario.current_m_s = read_vector<3>(root["current_m_s"]);
   }
   if (root.has("excitation")) {
-    scenario.excitation =
-        read_excitation(root["excitation"].table({"mode", "period_s", "correlation"}));
+    scenario.excitation = read_excitation(
+        root["excitation"].table({"mode", "period_s", "correlation", "effort", "dither"}));
   }
-  scenario.configurations = read_configurations(root);
-  read_phases(root, scenario);
-
   const std::filesystem::path vehicle_file =
       (file.parent_path() / root["vehicle"].text()).lexically_normal();
   std::error_code error;  // of permissions: read_vehicle() tells
@@ -226,6 +297,8 @@ Scenario read_scenario(const std::filesystem::path& file) {
     root["vehicle"].refuse("there is no file " + vehicle_file.string());
   }
   scenario.vehicle = read_vehicle(vehicle_file);
+  scenario.configurations = read_configurations(root, scenario.vehicle.thrusters);
+  read_phases(root, scenario);
   root.locate_errors([&] { scenario.validate(); });
   return scenario;
 }

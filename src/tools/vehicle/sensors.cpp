@@ -12,19 +12,25 @@
 namespace kelpie::vehicle {
 
 SensorNoise noise_preset(const std::string& name) {
-  static const std::map<std::string, SensorNoise> presets = {
-      {"none", {}},
-      {"as_recorded",
-       {.least_white_m_s = 0.0005, .greatest_white_m_s = 0.0005, .yaw_white_rad_s = 0.00036}},
-      {"raw_dvl",
-       {.scale = 0.002,
-        .bias_m_s = 0.001,
-        .least_white_m_s = 0.002,
-        .greatest_white_m_s = 0.005,
-        .yaw_white_rad_s = 0.00036}},
-      // As recorded, 52 times over.
-      {"stress",
-       {.least_white_m_s = 0.026, .greatest_white_m_s = 0.026, .yaw_white_rad_s = 0.0187}}};
+  static const std::map<std::string, SensorNoise> presets = {{"none", {}},
+                                                             {"as_recorded",
+                                                              {.least_white_m_s = 0.0005,
+                                                               .greatest_white_m_s = 0.0005,
+                                                               .yaw_white_rad_s = 0.00036,
+                                                               .attitude_white_rad = 0.001}},
+                                                             {"raw_dvl",
+                                                              {.scale = 0.002,
+                                                               .bias_m_s = 0.001,
+                                                               .least_white_m_s = 0.002,
+                                                               .greatest_white_m_s = 0.005,
+                                                               .yaw_white_rad_s = 0.00036,
+                                                               .attitude_white_rad = 0.001}},
+                                                             // As recorded, 52 times over.
+                                                             {"stress",
+                                                              {.least_white_m_s = 0.026,
+                                                               .greatest_white_m_s = 0.026,
+                                                               .yaw_white_rad_s = 0.0187,
+                                                               .attitude_white_rad = 0.052}}};
   if (const auto preset = presets.find(name); preset != presets.end()) {
     return preset->second;
   }
@@ -61,17 +67,49 @@ Eigen::Vector3d VelocitySensors::measure(const Eigen::Vector3d& velocity) {
   return shown_;
 }
 
-std::vector<Eigen::Vector3d> smoothed_slopes(std::span<const Eigen::Vector3d> measurements,
-                                             double period_s, double half_window_s) {
+SixAxisSensors::SixAxisSensors(const SensorNoise& noise, std::uint64_t seed)
+    : stream_(seed, "sensors of six axes"),
+      rate_white_(noise.yaw_white_rad_s),
+      attitude_white_(noise.attitude_white_rad) {
+  for (const Eigen::Index axis : {0, 1, 2}) {
+    factor_(axis) = 1.0 + stream_.uniform(-noise.scale, noise.scale);
+    bias_(axis) = stream_.uniform(-noise.bias_m_s, noise.bias_m_s);
+    white_(axis) = stream_.uniform(noise.least_white_m_s, noise.greatest_white_m_s);
+  }
+}
+
+Vector6 SixAxisSensors::measure(const Vector6& velocity) {
+  Vector6 measured;
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    const double white = stream_.normal();
+    measured(axis) = axis < 3 ? factor_(axis) * velocity(axis) + bias_(axis) + white_(axis) * white
+                              : velocity(axis) + rate_white_ * white;
+  }
+  return measured;
+}
+
+Eigen::Vector3d SixAxisSensors::measure_attitude(const Eigen::Vector3d& angles_rad) {
+  Eigen::Vector3d measured = angles_rad;
+  for (double& angle : measured) {
+    angle += attitude_white_ * stream_.normal();
+  }
+  return measured;
+}
+
+template <int axes>
+std::vector<Eigen::Matrix<double, axes, 1>> smoothed_slopes(
+    std::span<const Eigen::Matrix<double, axes, 1>> measurements, double period_s,
+    double half_window_s) {
+  using Measurement = Eigen::Matrix<double, axes, 1>;
   const auto count = static_cast<std::ptrdiff_t>(measurements.size());
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(half_window_s / period_s));
-  std::vector<Eigen::Vector3d> slopes;
+  std::vector<Measurement> slopes;
   slopes.reserve(measurements.size());
   for (std::ptrdiff_t row = 0; row < count; ++row) {
     const std::ptrdiff_t first = std::max<std::ptrdiff_t>(0, row - half);
     const std::ptrdiff_t last = std::min(count - 1, row + half);
     const double middle = 0.5 * static_cast<double>(first + last);
-    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+    Measurement weighted = Measurement::Zero();
     double squares = 0.0;
     for (std::ptrdiff_t i = first; i <= last; ++i) {
       const double offset_s = (static_cast<double>(i) - middle) * period_s;
@@ -82,5 +120,9 @@ std::vector<Eigen::Vector3d> smoothed_slopes(std::span<const Eigen::Vector3d> me
   }
   return slopes;
 }
+
+template std::vector<Eigen::Vector3d> smoothed_slopes<3>(std::span<const Eigen::Vector3d>, double,
+                                                         double);
+template std::vector<Vector6> smoothed_slopes<6>(std::span<const Vector6>, double, double);
 
 }  // namespace kelpie::vehicle

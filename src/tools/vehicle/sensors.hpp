@@ -19,7 +19,8 @@ struct SensorNoise {
   double bias_m_s = 0.0;         ///< drawn in ±bias
   double least_white_m_s = 0.0;  ///< standard deviation, drawn between least and greatest
   double greatest_white_m_s = 0.0;
-  double yaw_white_rad_s = 0.0;
+  double yaw_white_rad_s = 0.0;  ///< of every angular velocity
+  double attitude_white_rad = 0.0;
 };
 
 /// "none", "as_recorded", "raw_dvl" or "stress"; figures in docs/vehicle.md. Throws InputError.
@@ -43,12 +44,34 @@ class VelocitySensors {
   Eigen::Vector3d shown_ = Eigen::Vector3d::Zero();
 };
 
+/// Measured velocities and attitude of six axes, FRD: factor, bias and white noise of surge, sway
+/// and heave, white noise of the angular velocities and of roll, pitch and heading.
+class SixAxisSensors {
+ public:
+  /// Draws factors and biases.
+  SixAxisSensors(const SensorNoise& noise, std::uint64_t seed);
+
+  Vector6 measure(const Vector6& velocity);                             ///< One measurement.
+  Eigen::Vector3d measure_attitude(const Eigen::Vector3d& angles_rad);  ///< One measurement.
+
+ private:
+  RandomStream stream_;
+  Eigen::Vector3d factor_, bias_, white_;
+  double rate_white_, attitude_white_;
+};
+
 /// Accelerations from evenly spaced measurements, as a differentiating navigation filter gives
 /// them: at every measurement the slope per second of the least-squares line through the
 /// measurements within `half_window_s` on either side (fewer at the ends, at least the two
 /// neighbours). A filter of fixed lag works like this, and the real log shows no lag. Requires at
 /// least two measurements.
-std::vector<Eigen::Vector3d> smoothed_slopes(std::span<const Eigen::Vector3d> measurements,
-                                             double period_s, double half_window_s);
+template <int axes>
+std::vector<Eigen::Matrix<double, axes, 1>> smoothed_slopes(
+    std::span<const Eigen::Matrix<double, axes, 1>> measurements, double period_s,
+    double half_window_s);
+
+extern template std::vector<Eigen::Vector3d> smoothed_slopes<3>(std::span<const Eigen::Vector3d>,
+                                                                double, double);
+extern template std::vector<Vector6> smoothed_slopes<6>(std::span<const Vector6>, double, double);
 
 }  // namespace kelpie::vehicle

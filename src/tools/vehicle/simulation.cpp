@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "vehicle/dynamics.hpp"
 #include "vehicle/frames.hpp"
+#include "vehicle/pilot.hpp"
 #include "vehicle/simulator.hpp"
 #include "vehicle/tuning.hpp"
 
@@ -30,20 +32,23 @@ Eigen::Vector3d lateral_max_speeds(const VehicleParameters& vehicle) {
           vehicle.thrusters[kSway].max_speed_rps};
 }
 
-// A scenario being driven.
+// A scenario being driven. `Recorder` sees the vehicle at rest, every change of phase and every
+// tick.
+template <typename Recorder>
 class Mission {
  public:
   Mission(const Scenario& scenario, const Progress& progress)
       : scenario_(scenario),
         progress_(progress),
-        row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
-        sensor_ticks_(sensor_ticks(row_ticks_)),
         all_ticks_(ticks_in(scenario.duration_s())),
-        excitation_(scenario.excitation, lateral_max_speeds(scenario.vehicle), scenario.seed),
-        sensors_(scenario.noise, scenario.seed),
         simulator_(scenario.vehicle, plant_of(scenario.phases.front()), scenario.current_m_s,
-                   State{}) {
-    measure();
+                   State{}),
+        recorder_(scenario, simulator_) {
+    if (scenario.excitation.in_plane()) {
+      excitation_.emplace(scenario.excitation, lateral_max_speeds(scenario.vehicle), scenario.seed);
+    } else {
+      pilot_.emplace(scenario.vehicle, scenario.excitation, scenario.seed);
+    }
   }
 
   void drive(std::size_t index) {
@@ -53,21 +58,80 @@ class Mission {
     const std::int64_t ticks = ticks_in(phase.duration_s);
     const std::int64_t ramp_ticks = std::llround(phase.ramp_s * kTicksPerSecond);
     simulator_.set_plant(ramp_ticks > 0 ? from : to);
-    sensors_.set_fault(scenario_.configurations[phase.configuration].sensors);
+    recorder_.begin(phase);
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
       if (tick < ramp_ticks) {
         simulator_.set_plant(
             blend(from, to, static_cast<double>(tick + 1) / static_cast<double>(ramp_ticks)));
       }
-      simulator_.advance(excitation_.advance(kTickS, phase.amplitude));
-      record(phase);
+      advance(phase.amplitude);
+      recorder_.record(phase.configuration);
+      ++ticks_;
+      if (progress_ && (ticks_ % kProgressTicks == 0 || ticks_ == all_ticks_)) {
+        progress_(static_cast<double>(ticks_) / static_cast<double>(all_ticks_));
+      }
+    }
+  }
+
+  auto finish() && { return std::move(recorder_).finish(); }
+
+ private:
+  Plant plant_of(const Phase& phase) const {
+    return make_plant(scenario_.vehicle, scenario_.configurations[phase.configuration]);
+  }
+
+  void advance(double amplitude) {
+    if (excitation_) {
+      simulator_.advance_in_plane(excitation_->advance(kTickS, amplitude));
+    } else {
+      simulator_.advance(pilot_->advance(simulator_.state(), kTickS, amplitude));
+    }
+  }
+
+  const Scenario& scenario_;
+  const Progress& progress_;
+  std::int64_t all_ticks_;
+  std::optional<Excitation> excitation_;
+  std::optional<Pilot> pilot_;
+  Simulator simulator_;
+  Recorder recorder_;
+  std::int64_t ticks_ = 0;
+};
+
+class PlanarRecorder {
+ public:
+  PlanarRecorder(const Scenario& scenario, const Simulator& simulator)
+      : scenario_(scenario),
+        simulator_(simulator),
+        row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
+        sensor_ticks_(sensor_ticks(row_ticks_)),
+        sensors_(scenario.noise, scenario.seed) {
+    measure();
+  }
+
+  void begin(const Phase& phase) {
+    sensors_.set_fault(scenario_.configurations[phase.configuration].sensors);
+  }
+
+  void record(std::size_t configuration) {
+    ++ticks_;
+    if (ticks_ % sensor_ticks_ == 0) {
+      measure();
+    }
+    if (ticks_ % row_ticks_ == 0) {
+      rows_.push_back({.t_s = simulator_.time_s(),
+                       .configuration = configuration,
+                       .velocity = measurements_.back(),
+                       .rotors_rps = simulator_.state().rotors_rps.head<3>(),
+                       .acceleration = Eigen::Vector3d::Zero(),
+                       .true_acceleration = planar_flu(simulator_.acceleration())});
     }
   }
 
   std::vector<LogRow> finish() && {
     const double period_s = static_cast<double>(sensor_ticks_) * kTickS;
     const std::vector<Eigen::Vector3d> slopes =
-        smoothed_slopes(measurements_, period_s, kTuning.half_window_s);
+        smoothed_slopes<3>(measurements_, period_s, kTuning.half_window_s);
     const auto per_row = static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       rows_[row].acceleration = slopes[(row + 1) * per_row];
@@ -76,52 +140,101 @@ class Mission {
   }
 
  private:
-  Plant plant_of(const Phase& phase) const {
-    return make_plant(scenario_.vehicle, scenario_.configurations[phase.configuration]);
-  }
-
   void measure() {
     measurements_.push_back(sensors_.measure(planar_flu(simulator_.state().velocity)));
   }
 
-  void record(const Phase& phase) {
-    ++ticks_;
-    if (ticks_ % sensor_ticks_ == 0) {
-      measure();
-    }
-    if (ticks_ % row_ticks_ == 0) {
-      rows_.push_back({.t_s = simulator_.time_s(),
-                       .configuration = phase.configuration,
-                       .velocity = measurements_.back(),
-                       .rotors_rps = simulator_.state().rotors_rps.head<3>(),
-                       .acceleration = Eigen::Vector3d::Zero(),
-                       .true_acceleration = planar_flu(simulator_.acceleration())});
-    }
-    if (progress_ && (ticks_ % kProgressTicks == 0 || ticks_ == all_ticks_)) {
-      progress_(static_cast<double>(ticks_) / static_cast<double>(all_ticks_));
-    }
-  }
-
   const Scenario& scenario_;
-  const Progress& progress_;
-  std::int64_t row_ticks_, sensor_ticks_, all_ticks_;
-  Excitation excitation_;
+  const Simulator& simulator_;
+  std::int64_t row_ticks_, sensor_ticks_;
   VelocitySensors sensors_;
-  Simulator simulator_;
   std::int64_t ticks_ = 0;
   std::vector<Eigen::Vector3d> measurements_;
   std::vector<LogRow> rows_;
 };
 
-}  // namespace
+// Roll, pitch, heading (Fossen 2011, eq. 2.29 to 2.31 of the rotation matrix).
+Eigen::Vector3d euler_angles(const Eigen::Quaterniond& attitude) {
+  const Eigen::Matrix3d to_world = attitude.toRotationMatrix();
+  return {std::atan2(to_world(2, 1), to_world(2, 2)),
+          std::asin(std::clamp(-to_world(2, 0), -1.0, 1.0)),
+          std::atan2(to_world(1, 0), to_world(0, 0))};
+}
 
-std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress) {
+class SixAxisRecorder {
+ public:
+  SixAxisRecorder(const Scenario& scenario, const Simulator& simulator)
+      : unit_(scenario.vehicle.command_unit),
+        simulator_(simulator),
+        row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
+        sensor_ticks_(sensor_ticks(row_ticks_)),
+        sensors_(scenario.noise, scenario.seed) {
+    measure();
+  }
+
+  void begin(const Phase& /*phase*/) {}  // validate() refuses faults of sensors
+
+  void record(std::size_t configuration) {
+    ++ticks_;
+    if (ticks_ % sensor_ticks_ == 0) {
+      measure();
+    }
+    if (ticks_ % row_ticks_ == 0) {
+      rows_.push_back(
+          {.t_s = simulator_.time_s(),
+           .configuration = configuration,
+           .velocity = measurements_.back(),
+           .attitude_rad = sensors_.measure_attitude(euler_angles(simulator_.state().attitude)),
+           .commands = simulator_.commands().unaryExpr(
+               [this](double command) { return command_in_unit(unit_, command); }),
+           .voltage_v = simulator_.voltage_v(),
+           .acceleration = Vector6::Zero(),
+           .true_acceleration = simulator_.acceleration()});
+    }
+  }
+
+  std::vector<SixAxisRow> finish() && {
+    const double period_s = static_cast<double>(sensor_ticks_) * kTickS;
+    const std::vector<Vector6> slopes =
+        smoothed_slopes<6>(measurements_, period_s, kTuning.six_half_window_s);
+    const auto per_row = static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      rows_[row].acceleration = slopes[(row + 1) * per_row];
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  void measure() { measurements_.push_back(sensors_.measure(simulator_.state().velocity)); }
+
+  CommandUnit unit_;
+  const Simulator& simulator_;
+  std::int64_t row_ticks_, sensor_ticks_;
+  SixAxisSensors sensors_;
+  std::int64_t ticks_ = 0;
+  std::vector<Vector6> measurements_;
+  std::vector<SixAxisRow> rows_;
+};
+
+template <typename Recorder>
+auto recorded(const Scenario& scenario, const Progress& progress) {
   scenario.validate();
-  Mission mission(scenario, progress);
+  Mission<Recorder> mission(scenario, progress);
   for (std::size_t phase = 0; phase < scenario.phases.size(); ++phase) {
     mission.drive(phase);
   }
   return std::move(mission).finish();
+}
+
+}  // namespace
+
+std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress) {
+  require_plane(scenario.vehicle);
+  return recorded<PlanarRecorder>(scenario, progress);
+}
+
+std::vector<SixAxisRow> simulate_six_axes(const Scenario& scenario, const Progress& progress) {
+  return recorded<SixAxisRecorder>(scenario, progress);
 }
 
 }  // namespace kelpie::vehicle

@@ -18,7 +18,7 @@ namespace {
   text << "the simulation left finite numbers at t = " << time_s << " s; the last state: position "
        << state.position_m.format(list) << " m, velocity " << state.velocity.format(list)
        << " m/s and rad/s, rotors " << state.rotors_rps.format(list)
-       << " rev/s. Damping or thrust is too strong for steps of " << kTickS << " s.";
+       << " (rev/s or share). Damping or thrust is too strong for steps of " << kTickS << " s.";
   throw InputError(text.str());
 }
 
@@ -34,22 +34,61 @@ std::int64_t ticks_in(double duration_s) {
 Simulator::Simulator(const VehicleParameters& vehicle, const Plant& plant,
                      const Eigen::Vector3d& current_m_s,
                      const State& start)  // NOLINT(modernize-pass-by-value): all numbers
-    : current_(current_m_s), dynamics_(plant, current_m_s), hold_(vehicle), state_(start) {
-  drive_.lag_s = vehicle.rotor_lag_s;
+    : vehicle_(vehicle),
+      current_(current_m_s),
+      dynamics_(plant, current_m_s),
+      battery_(vehicle.battery),
+      state_(start) {
+  const RotorSpeeds stopped =
+      RotorSpeeds::Zero(static_cast<Eigen::Index>(vehicle.thrusters.size()));
+  if (drives_in_plane(vehicle)) {
+    hold_.emplace(vehicle);
+  }
+  if (state_.rotors_rps.size() == 0) {
+    state_.rotors_rps = stopped;
+  }
+  drive_ = {.commands_rps = stopped, .lag_s = vehicle.rotor_lag_s, .rate = vehicle.rotor_rate};
+  commands_ = stopped;
+  waiting_.assign(static_cast<std::size_t>(ticks_in(vehicle.rotor_delay_s)), stopped);
+  dynamics_.set_thrust_factor(battery_.thrust_factor());
 }
 
 void Simulator::set_plant(const Plant& plant) {
   dynamics_ = Dynamics(plant, current_);
+  dynamics_.set_thrust_factor(battery_.thrust_factor());
 }
 
-void Simulator::advance(const Eigen::Vector3d& lateral_rps) {
-  drive_.commands_rps << lateral_rps, hold_.update(state_, kTickS);
+RotorSpeeds Simulator::delayed(const RotorSpeeds& commands) {
+  if (waiting_.empty()) {
+    return commands;
+  }
+  RotorSpeeds& slot = waiting_[static_cast<std::size_t>(ticks_) % waiting_.size()];
+  RotorSpeeds due = slot;
+  slot = commands;
+  return due;
+}
+
+void Simulator::advance(const RotorSpeeds& commands) {
+  commands_ = commands;
+  drive_.commands_rps = delayed(commands);
+  for (Eigen::Index i = 0; i < commands.size(); ++i) {
+    drive_.commands_rps(i) =
+        speed_for_command(vehicle_.thrusters[static_cast<std::size_t>(i)], drive_.commands_rps(i));
+  }
+  battery_.draw(thruster_power_w(vehicle_, state_.rotors_rps, dynamics_.thrust_factor()), kTickS);
+  dynamics_.set_thrust_factor(battery_.thrust_factor());
   const State next = rk4_step(dynamics_, state_, drive_, kTickS);
   ++ticks_;
   if (!next.is_finite()) {
     fail(state_, time_s());
   }
   state_ = next;
+}
+
+void Simulator::advance_in_plane(const Eigen::Vector3d& lateral_rps) {
+  RotorSpeeds commands(static_cast<Eigen::Index>(kPlanarThrusterCount));
+  commands << lateral_rps, hold_->update(state_, kTickS);
+  advance(commands);
 }
 
 Vector6 Simulator::acceleration() const {
@@ -80,7 +119,7 @@ std::vector<Eigen::Vector3d> free_run(const VehicleParameters& vehicle,
     }
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
       const double share = (static_cast<double>(tick) + 0.5) / static_cast<double>(ticks);
-      simulator.advance((1.0 - share) * rotors_rps[row] + share * rotors_rps[row + 1]);
+      simulator.advance_in_plane((1.0 - share) * rotors_rps[row] + share * rotors_rps[row + 1]);
     }
   }
   return velocities;

@@ -110,7 +110,7 @@ TEST(PlanarFit, IntervalsHoldTheTruthUnderNoise) {
     const PlanarFit fit =
         scaled_by_inertia(fit_planar(drive(vehicle(), 900.0, 2e-3, sines, seed)), 85.0, 0.0);
     for (std::size_t i = 1; i < truth.size(); ++i) {
-      const PlanarParameter& found = fit.parameters[i];
+      const FittedParameter& found = fit.parameters[i];
       held += std::abs(found.value - truth[i]) < 1.645 * found.error ? 1 : 0;
       ++all;
       EXPECT_LT(std::abs(found.value - truth[i]), 6.0 * found.error) << found.name;
@@ -135,7 +135,7 @@ TEST(PlanarFit, SignsHoldAndAreTold) {
   PlanarVehicle truth = vehicle();
   truth.quadratic_drag[0] = -6.0;
   const PlanarFit fit = scaled_by_inertia(fit_planar(drive(truth, 900.0, 1e-3, sines)), 85.0, 0.0);
-  const PlanarParameter& drag = fit.parameters[PlanarPlace::quadratic_drag];
+  const FittedParameter& drag = fit.parameters[PlanarPlace::quadratic_drag];
   EXPECT_EQ(drag.value, 0.0);
   EXPECT_EQ(drag.state, ParameterState::at_bound);
   EXPECT_NEAR(fit.vehicle().sway_inertia, 95.0, 5.0);

@@ -23,7 +23,7 @@ TEST(Allocation, ATickAllocatesNothing) {
   const std::size_t before = allocations;
   for (int tick = 0; tick < 1000; ++tick) {
     simulator.set_plant(vehicle::blend(plant, other, tick / 1000.0));
-    simulator.advance({5.0, 3.0, -4.0});
+    simulator.advance_in_plane({5.0, 3.0, -4.0});
   }
   EXPECT_EQ(allocations - before, 0U);
   testing::dagon();  // the count does count

@@ -45,7 +45,7 @@ void add_forces(dart::dynamics::BodyNode& body, const vehicle::VehicleParameters
   body.addExtForce(weight * down, vehicle.centre_of_gravity_m, false, true);
   body.addExtForce(-(weight + vehicle.net_buoyancy_n) * down, vehicle.centre_of_buoyancy_m, false,
                    true);
-  for (std::size_t i = 0; i < vehicle::kThrusterCount; ++i) {
+  for (std::size_t i = 0; i < vehicle.thrusters.size(); ++i) {
     const vehicle::Thruster& thruster = vehicle.thrusters[i];
     const double n = speeds_rps(static_cast<Eigen::Index>(i));
     const double force = (n < 0.0 ? -thruster.reverse : thruster.forward) * n * n;
@@ -86,6 +86,7 @@ TEST(Dart, AgreesWithTheIntegrator) {
   const vehicle::VehicleParameters vehicle = testing::coupled_vehicle(stream);
   vehicle::State start;
   start.velocity << 0.4, -0.2, 0.1, 0.3, -0.2, 0.5;
+  start.rotors_rps.resize(5);
   start.rotors_rps << 12.0, -5.0, 8.0, 3.0, -2.0;
   const vehicle::RotorDrive drive{.commands_rps = start.rotors_rps, .lag_s = 0.0};
   const vehicle::Vector6 ours =

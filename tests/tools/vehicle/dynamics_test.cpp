@@ -62,7 +62,7 @@ TEST(Dynamics, SurgeAccelerationIsThrustLessDragOverMass) {
   vehicle.linear_damping(0) = 14.0;
   vehicle.quadratic_damping(0) = 5.0;
   const vehicle::Dynamics dynamics(testing::nominal(vehicle));
-  vehicle::RotorSpeeds speeds = vehicle::RotorSpeeds::Zero();
+  vehicle::RotorSpeeds speeds = vehicle::RotorSpeeds::Zero(5);
   speeds.head<2>().setConstant(10.0);
   vehicle::Vector6 velocity = vehicle::Vector6::Zero();
   velocity(0) = 0.3;
@@ -118,7 +118,7 @@ TEST(Dynamics, APullActsWhereItIsAttached) {
   vehicle.centre_of_gravity_m.setZero();
   const vehicle::Dynamics dynamics(vehicle::make_plant(vehicle, pulled));
   const vehicle::Vector6 acceleration = dynamics.acceleration(
-      Eigen::Quaterniond::Identity(), vehicle::Vector6::Zero(), vehicle::RotorSpeeds::Zero());
+      Eigen::Quaterniond::Identity(), vehicle::Vector6::Zero(), vehicle::RotorSpeeds::Zero(5));
   EXPECT_NEAR(acceleration(0), -8.5 / 85.0, 1e-12);
 }
 

@@ -20,7 +20,7 @@ TEST(Hold, BringsTheVehicleBackToDepthAndLevelAgainstItsBuoyancy) {
   start.attitude = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
   vehicle::Simulator simulator(vehicle, testing::nominal(vehicle), Eigen::Vector3d::Zero(), start);
   for (int tick = 0; tick < 300 * vehicle::kTicksPerSecond; ++tick) {
-    simulator.advance(Eigen::Vector3d::Zero());
+    simulator.advance_in_plane(Eigen::Vector3d::Zero());
   }
   EXPECT_NEAR(simulator.state().position_m.z(), 0.0, 1e-3);
   EXPECT_NEAR(pitch(simulator.state()), 0.0, 1e-3);
@@ -38,7 +38,7 @@ TEST(Hold, KeepsDepthAndPitchWhileItIsDrivenHard) {
   double steepest = 0.0;
   for (int tick = 0; tick < 120 * vehicle::kTicksPerSecond; ++tick) {
     const double side = tick / 1500 % 2 == 0 ? 1.0 : -1.0;
-    simulator.advance({12.5 * side, 12.5, -10.9 * side});
+    simulator.advance_in_plane({12.5 * side, 12.5, -10.9 * side});
     deepest = std::max(deepest, std::abs(simulator.state().position_m.z()));
     steepest = std::max(steepest, std::abs(pitch(simulator.state())));
   }
@@ -55,12 +55,12 @@ TEST(Hold, IntegralDoesNotWindUp) {
   vehicle::Simulator simulator(vehicle, testing::nominal(buoyant), Eigen::Vector3d::Zero(),
                                vehicle::State{});
   for (int tick = 0; tick < 60 * vehicle::kTicksPerSecond; ++tick) {
-    simulator.advance(Eigen::Vector3d::Zero());
+    simulator.advance_in_plane(Eigen::Vector3d::Zero());
   }
   simulator.set_plant(testing::nominal(vehicle));
   double deepest = 0.0;
   for (int tick = 0; tick < 1000 * vehicle::kTicksPerSecond; ++tick) {
-    simulator.advance(Eigen::Vector3d::Zero());
+    simulator.advance_in_plane(Eigen::Vector3d::Zero());
     deepest = std::max(deepest, simulator.state().position_m.z());
   }
   EXPECT_LT(deepest, 3.0);

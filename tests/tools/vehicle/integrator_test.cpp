@@ -49,18 +49,17 @@ TEST(Integrator, EnergyChangesByWhatThrustersGiveAndDampingTakes) {
     const vehicle::Plant plant = testing::nominal(testing::coupled_vehicle(stream));
     const vehicle::Dynamics dynamics(plant);
     vehicle::State state = testing::random_state(stream);
-    state.rotors_rps = testing::random_vector<vehicle::kThrusterCount>(stream, 10.0);
+    state.rotors_rps = testing::random_vector<vehicle::kPlanarThrusterCount>(stream, 10.0);
     const vehicle::RotorDrive drive{.commands_rps = state.rotors_rps, .lag_s = 0.0};
     const double rate = (energy(plant, vehicle::rk4_step(dynamics, state, drive, kStepS)) -
                          energy(plant, vehicle::rk4_step(dynamics, state, drive, -kStepS))) /
                         (2.0 * kStepS);
 
     vehicle::Vector6 thrust_forces = vehicle::Vector6::Zero();
-    for (std::size_t j = 0; j < vehicle::kThrusterCount; ++j) {
-      const double n = state.rotors_rps(static_cast<Eigen::Index>(j));
-      const vehicle::Thruster& thruster = plant.thrusters[j];
-      thrust_forces += (n > 0 ? thruster.forward : thruster.reverse) * n * std::abs(n) *
-                       plant.thrust_axes.col(static_cast<Eigen::Index>(j));
+    for (Eigen::Index j = 0; j < state.rotors_rps.size(); ++j) {
+      const double n = state.rotors_rps(j);
+      thrust_forces += (n > 0 ? plant.forward(j) : plant.reverse(j)) * n * std::abs(n) *
+                       plant.thrust_axes.col(j);
     }
     const vehicle::Vector6& velocity = state.velocity;
     const double lost = velocity.cwiseAbs2().dot(plant.linear_damping) +
@@ -114,7 +113,7 @@ TEST(Integrator, MirrorsPortAndStarboard) {
   vehicle::VehicleParameters vehicle = testing::dagon();
   vehicle.thrusters[vehicle::kSway].reverse = vehicle.thrusters[vehicle::kSway].forward;
   const vehicle::Dynamics dynamics(testing::nominal(vehicle));
-  vehicle::RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
+  vehicle::RotorDrive drive{.commands_rps = vehicle::RotorSpeeds(5), .lag_s = 0.2};
   drive.commands_rps << 12.0, -7.0, 5.0, 3.0, -2.0;
   vehicle::RotorDrive mirrored = drive;
   mirrored.commands_rps << -7.0, 12.0, -5.0, 3.0, -2.0;
@@ -135,7 +134,7 @@ TEST(Integrator, AConstantCurrentEntersThroughTheRelativeVelocityOnly) {
   RandomStream stream(3, "current");
   const Eigen::Vector3d current(0.3, -0.2, 0.05);
   const vehicle::Plant plant = testing::nominal(testing::coupled_vehicle(stream));
-  vehicle::RotorDrive drive{.commands_rps = {}, .lag_s = 0.2};
+  vehicle::RotorDrive drive{.commands_rps = vehicle::RotorSpeeds(5), .lag_s = 0.2};
   drive.commands_rps << 10.0, -4.0, 8.0, 2.0, 2.0;
   const vehicle::State still = testing::random_state(stream);
   vehicle::State carried = still;
@@ -154,7 +153,7 @@ TEST(Integrator, AConstantCurrentEntersThroughTheRelativeVelocityOnly) {
 
 TEST(Integrator, RotorsFollowWithTheirLag) {
   const vehicle::Dynamics dynamics(testing::nominal(testing::dagon()));
-  vehicle::RotorDrive drive{.commands_rps = vehicle::RotorSpeeds::Constant(10.0), .lag_s = 0.2};
+  vehicle::RotorDrive drive{.commands_rps = vehicle::RotorSpeeds::Constant(5, 10.0), .lag_s = 0.2};
   const vehicle::State lagging = testing::after(dynamics, vehicle::State{}, 0.2, 0.01, drive);
   EXPECT_NEAR(lagging.rotors_rps(0), 10.0 * (1.0 - std::exp(-1.0)), 1e-5);
   drive.lag_s = 0.0;

@@ -162,8 +162,9 @@ TEST_F(ScenarioFile, DampingAndThrustersMustMakeSense) {
 
 TEST_F(ScenarioFile, KeysMustBeKnownAndThere) {
   expect_vehicle_error("mass_kg = 70.0", "mas_kg = 70.0", "body.mas_kg", "did you mean 'mass_kg'?");
-  expect_vehicle_error("[thrusters.sway]", "[thrusters.swaay]", "thrusters.swaay",
-                       "did you mean 'sway'?");
+  write("scenarios/paper.toml");
+  write("vehicles/dagon.toml", "[thrusters.sway]", "[thrusters.swaay]");
+  EXPECT_EQ(place_of_error("needs the thrusters surge_left, surge_right, sway").field, "vehicle");
   expect_scenario_error("rate_hz = 1.0", "rat_hz = 1.0", "rat_hz", "did you mean 'rate_hz'?");
   expect_scenario_error("{ surge_right = 0.5 }", "{ surge_rigth = 0.5 }",
                         "configurations[1].effectiveness.surge_rigth",
@@ -210,6 +211,45 @@ TEST_F(ScenarioFile, PeriodsMustRunUpwards) {
                         "excitation.period_s", "shortest first");
   expect_scenario_error("noise = \"as_recorded\"", "excitation = { mode = \"corelated\" }",
                         "excitation.mode", "did you mean 'correlated'?");
+}
+
+TEST_F(ScenarioFile, VehiclesWithAnyThrustersTellWhatIsWrong) {
+  const auto expect = [&](const std::string& file, const std::string& old_text,
+                          const std::string& new_text, const std::string& field,
+                          const std::string& said) {
+    SCOPED_TRACE(new_text);
+    write("vehicles/bluerov2_heavy.toml");
+    write("scenarios/bluerov2_heavy.toml");
+    write(file, old_text, new_text);
+    try {
+      vehicle::read_scenario(folder_ / "scenarios/bluerov2_heavy.toml");
+      ADD_FAILURE() << "nothing was found wrong";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+      EXPECT_EQ(error.place().field, field);
+      EXPECT_EQ(std::filesystem::path(error.place().file).filename(),
+                std::filesystem::path(file).filename());
+      EXPECT_EQ(error.place().line, line_);
+    }
+  };
+  const std::string vehicle = "vehicles/bluerov2_heavy.toml";
+  expect(vehicle, "command = \"pwm\"", "command = \"pwmm\"", "rotors.command",
+         "did you mean 'pwm'?");
+  expect(vehicle, "delay_s = 0.02", "delay_s = 0.025", "rotors.delay_s", "whole number of steps");
+  expect(vehicle, "dead_band = 0.0625", "dead_band = 1.0", "thrusters.m1.dead_band", "below 1");
+  expect(vehicle, "forward = 51.5", "max_speed_rps = 1\nforward = 51.5",
+         "thrusters.m1.max_speed_rps", "unknown key");
+  expect(vehicle, "nominal_v = 16.0", "nominal_v = 0.0", "battery.nominal_v", "above zero");
+  expect(vehicle, "empty_v = 13.2", "empty_v = 17.2", "battery.empty_v", "at most full_v");
+  expect(vehicle, "exponent = 1.2", "exponent = -1.2", "battery.exponent", "between 0 and 3");
+  const std::string scenario = "scenarios/bluerov2_heavy.toml";
+  expect(scenario, "mode = \"pilot\"", "mode = \"pilt\"", "excitation.mode",
+         "did you mean 'pilot'?");
+  expect(scenario, "dither = 0.1", "dither = 1.1", "excitation.dither", "between 0 and 1");
+  expect(scenario, "effort = [50, 50", "effort = [-50, 50", "excitation.effort", "none negative");
+  expect(scenario, "log = \"six_axes\"", "log = \"six\"", "log", "six_axes");
+  expect(scenario, "name = \"nominal\"", "effectiveness = { m9 = 0.5 }\nname = \"nominal\"",
+         "configurations[0].effectiveness.m9", "unknown key");
 }
 
 TEST_F(ScenarioFile, APayloadMustLeaveAMassMatrix) {

@@ -82,7 +82,7 @@ TEST(Sensors, SlopesOfAParabolaAreItsDerivativeWithoutLag) {
     const double t = 0.25 * i;
     values.emplace_back(t, 0.5 * t * t, 3.0);
   }
-  const auto slopes = vehicle::smoothed_slopes(values, 0.25, 0.5);
+  const auto slopes = vehicle::smoothed_slopes<3>(values, 0.25, 0.5);
   ASSERT_EQ(slopes.size(), values.size());
   for (std::size_t i = 2; i + 2 < slopes.size(); ++i) {
     EXPECT_TRUE(slopes[i].isApprox(Eigen::Vector3d(1.0, 0.25 * static_cast<double>(i), 0.0)));
@@ -98,7 +98,7 @@ TEST(Sensors, SlopesSmoothWhiteNoise) {
     value = sensors.measure(Eigen::Vector3d::Zero());
   }
   double squares = 0.0;
-  for (const auto& slope : vehicle::smoothed_slopes(values, 0.25, 0.5)) {
+  for (const auto& slope : vehicle::smoothed_slopes<3>(values, 0.25, 0.5)) {
     squares += slope.x() * slope.x();
   }
   // Least squares over five points: sigma / (dt sqrt(10)).

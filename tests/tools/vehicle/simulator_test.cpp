@@ -25,7 +25,7 @@ TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
   vehicle.linear_damping(5) = 1e3;  // straight ahead it is unstable: rounding on ARM turned it
   vehicle::Simulator simulator = at_rest(vehicle);
   for (int tick = 0; tick < 200 * vehicle::kTicksPerSecond; ++tick) {
-    simulator.advance({12.5, 12.5, 0.0});
+    simulator.advance_in_plane({12.5, 12.5, 0.0});
   }
   // 5 u² + 14 u = 2 · 0.0262 · 12.5²
   const double thrust_n = 2.0 * 0.0262 * 12.5 * 12.5;
@@ -37,13 +37,13 @@ TEST(Simulator, SteadySurgeSpeedIsWhereThrustEqualsDrag) {
 TEST(Simulator, AccelerationIsTheDerivativeOfTheVelocity) {
   vehicle::Simulator simulator = at_rest(testing::dagon());
   for (int tick = 0; tick < 10 * vehicle::kTicksPerSecond; ++tick) {
-    simulator.advance({12.5, -6.0, 8.0});
+    simulator.advance_in_plane({12.5, -6.0, 8.0});
   }
   for (int i = 0; i < 50; ++i) {
     const vehicle::Vector6 before = simulator.state().velocity;
-    simulator.advance({12.5, -6.0, 8.0});
+    simulator.advance_in_plane({12.5, -6.0, 8.0});
     const vehicle::Vector6 acceleration = simulator.acceleration();
-    simulator.advance({12.5, -6.0, 8.0});
+    simulator.advance_in_plane({12.5, -6.0, 8.0});
     const vehicle::Vector6 slope = (simulator.state().velocity - before) / (2.0 * vehicle::kTickS);
     EXPECT_LT((vehicle::planar_flu(slope) - vehicle::planar_flu(acceleration)).norm(), 1e-5);
   }
@@ -55,7 +55,7 @@ TEST(Simulator, StopsWithTimeAndStateWhenNumbersRunAway) {
   vehicle::Simulator simulator = at_rest(vehicle);
   try {
     for (int tick = 0; tick < 100 * vehicle::kTicksPerSecond; ++tick) {
-      simulator.advance({5.0, 5.0, 0.0});
+      simulator.advance_in_plane({5.0, 5.0, 0.0});
     }
     FAIL() << "should have run away";
   } catch (const InputError& failure) {
