@@ -26,6 +26,7 @@ void add_simulate(CLI::App& app);
 void add_rollout(CLI::App& app);
 void add_study(CLI::App& app);
 void add_tune(CLI::App& app);
+void add_vehicle(CLI::App& app);
 
 /// The flag --help-all of the program. Added after the subcommands, so that they don't inherit the
 /// flag.

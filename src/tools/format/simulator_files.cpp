@@ -7,6 +7,7 @@
 #include "format/parameters.hpp"
 #include "format/simulator_fields.hpp"
 #include "vehicle/parameters.hpp"
+#include "vehicle/vehicle_text.hpp"
 
 namespace kelpie::format {
 namespace {
@@ -205,39 +206,15 @@ std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& s
 }
 
 std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& source) {
-  const vehicle::VehicleParameters& body = vehicle.body;
-  const auto list = [](const auto& values) { return "[" + numbers(values, ", ") + "]"; };
-  const auto table = [](const auto& matrix) {
-    return "[\n" + rows(matrix, "  [", ", ", "],\n") + "]";
-  };
-  std::string text = fmt::format(
-      "# Identified by `kelpie identify` from {}.\n"
-      "# Surge, sway, yaw and the lateral thrusters are identified; {}.\n"
-      "# Speeds of thrusters in rev/s, {}. Constant forces ({:.3g} N, {:.3g} N, {:.3g} N m) aren't "
-      "part of a vehicle file.\n\n",
-      without_controls(source), without_controls(vehicle.rest), vehicle.speed_unit,
-      vehicle.constant_force(0), vehicle.constant_force(1), vehicle.constant_force(5));
-  text += fmt::format(
-      "[body]\nmass_kg = {:.6g}\ninertia_kg_m2 = {}\ncentre_of_gravity_m = {}\n"
-      "centre_of_buoyancy_m = {}\nnet_buoyancy_n = {:.6g}\n\n"
-      "[hydrodynamics]\nadded_mass = {}\nlinear_damping = {}\nquadratic_damping = {}\n\n"
-      "[rotors]\nlag_s = {:.6g}  # commands are speeds here\n\n",
-      body.mass_kg, table(body.inertia_kg_m2), list(body.centre_of_gravity_m),
-      list(body.centre_of_buoyancy_m), body.net_buoyancy_n, table(body.added_mass),
-      list(body.linear_damping), list(body.quadratic_damping), body.rotor_lag_s);
-  for (const vehicle::Thruster& thruster : body.thrusters) {
-    text += fmt::format(
-        "[thrusters.{}]\nforward = {:.6g}\nreverse = {:.6g}\nposition_m = {}\n"
-        "direction = [{:.17g}, {:.17g}, {:.17g}]\nmax_speed_rps = {:.6g}\n\n",
-        thruster.name, thruster.forward, thruster.reverse, list(thruster.position_m),
-        thruster.direction(0), thruster.direction(1), thruster.direction(2),
-        thruster.max_speed_rps);
-  }
-  return text + fmt::format(
-                    "[hold]\ndepth_p = {:.6g}\ndepth_i = {:.6g}\ndepth_d = {:.6g}\n"
-                    "pitch_p = {:.6g}\npitch_d = {:.6g}\n",
-                    body.hold.depth_p, body.hold.depth_i, body.hold.depth_d, body.hold.pitch_p,
-                    body.hold.pitch_d);
+  return fmt::format(
+             "# Identified by `kelpie identify` from {}.\n"
+             "# Surge, sway, yaw and the lateral thrusters are identified; {}.\n"
+             "# Commands are speeds of thrusters in rev/s, {}. Constant forces ({:.3g} N, {:.3g} "
+             "N, "
+             "{:.3g} N m) aren't part of a vehicle file.\n\n",
+             without_controls(source), without_controls(vehicle.rest), vehicle.speed_unit,
+             vehicle.constant_force(0), vehicle.constant_force(1), vehicle.constant_force(5)) +
+         vehicle::vehicle_text(vehicle.body);
 }
 
 }  // namespace kelpie::format

@@ -7,6 +7,7 @@
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "motion/signal_names.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/hold.hpp"
 #include "vehicle/simulator.hpp"
@@ -76,6 +77,8 @@ void validate_hold(const HoldGains& hold) {
 }  // namespace
 
 void VehicleParameters::validate() const {
+  require(!thrusters.empty() && thrusters.size() <= kMostThrusters, "thrusters",
+          "must be 1 to " + std::to_string(kMostThrusters));
   require(positive(mass_kg), "body.mass_kg", "must be above zero");
   require(is_symmetric(inertia_kg_m2), "body.inertia_kg_m2", "must be symmetric");
   require(is_positive_definite(inertia_kg_m2), "body.inertia_kg_m2", "must be positive definite");
@@ -90,8 +93,6 @@ void VehicleParameters::validate() const {
   require(not_negative(quadratic_damping), "hydrodynamics.quadratic_damping",
           "must not be negative");
   validate_rotors(*this);
-  require(!thrusters.empty() && thrusters.size() <= kMostThrusters, "thrusters",
-          "must be 1 to " + std::to_string(kMostThrusters));
   for (const Thruster& thruster : thrusters) {
     validate_thruster(thruster, "thrusters." + thruster.name);
   }
@@ -153,7 +154,7 @@ void require_plane(const VehicleParameters& vehicle) {
 }
 
 double command_in_unit(CommandUnit unit, double command) {
-  return unit == CommandUnit::pwm ? kTuning.neutral_pulse_us + kTuning.pulse_per_share_us * command
+  return unit == CommandUnit::pwm ? kNeutralPulseUs + kTuning.pulse_per_share_us * command
                                   : command;
 }
 

@@ -10,10 +10,8 @@ inline constexpr struct Tuning {
   double half_window_s = 0.5;       ///< of the navigation filter that gives the accelerations
   double six_half_window_s = 0.15;  ///< … in the log of six axes: roll and pitch swing in 1 to 2 s
   double stick_lag_s = 0.5;         ///< a pilot's hand on a stick
-  // Of RC pulses: ArduSub's defaults, and the range of Blue Robotics' Basic ESC.
-  double neutral_pulse_us = 1500.0;
-  double pulse_per_share_us = 400.0;
-  double longest_delay_s = 10.0;  ///< of a command
+  double pulse_per_share_us = 400.0;  ///< ArduSub's, and the range of Blue Robotics' Basic ESC
+  double longest_delay_s = 10.0;      ///< of a command
   // Bounds of a scenario (docs/limits.md); a tick costs about 2 µs, a row 300 bytes.
   double longest_drive_s = 30.0 * 86400.0;  ///< all phases together
   double most_rows = 2e6;                   ///< duration × rate

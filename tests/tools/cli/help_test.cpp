@@ -82,7 +82,7 @@ TEST_F(Help, MakesAManualPageWithoutFaultOrAPathOfTheBuild) {
             "help2man --no-info --help-option=--help-all "
             "--include=" KELPIE_SOURCE_DIR "/cmake/kelpie.h2m " KELPIE_COMMAND);
   EXPECT_EQ(page.find(".\\\""), 0U) << page;
-  EXPECT_EQ(matches(page, R"(\n\.SS "kelpie ([a-z]+) )").size(), commands().size() + 2);
+  EXPECT_EQ(matches(page, R"(\n\.SS "kelpie ([a-z]+) )").size(), commands().size() + 3);
   for (const char* const section : {"NAME", "SYNOPSIS", "OPTIONS", "COMMANDS", "EXAMPLES"}) {
     EXPECT_NE(page.find(std::string("\n.SH ") + section), std::string::npos) << section;
   }

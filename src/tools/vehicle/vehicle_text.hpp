@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "vehicle/parameters.hpp"
+
+namespace kelpie::vehicle {
+
+/// A vehicle file without head, as read_vehicle() reads (docs/vehicle.md): numbers with six digits,
+/// directions exact. Requires a vehicle that passes validate().
+std::string vehicle_text(const VehicleParameters& vehicle);
+
+}  // namespace kelpie::vehicle
