@@ -3,8 +3,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "kelpie/model/open_loop.hpp"
 #include "kelpie/model/rollout.hpp"
@@ -24,9 +27,29 @@ struct DeadReckoningSettings {
   double current_wander = 0.001;
   /// Duration of simulated outages [s] while velocities are measured; 0: none.
   double practice_s = 20.0;
+  /// Velocities measured by a gyro of their own, apart from the velocity log; in planar motion the
+  /// yaw rate (2) always is.
+  std::vector<std::size_t> rates{};
+  /// Whether repeated values and exact zeros are recognised (VelocityFault).
+  bool checks = true;
 
   void validate(std::size_t states) const;  ///< Throws InputError naming the field.
 };
+
+/// Why a velocity of the last sample doesn't count as measured.
+enum class VelocityFault : std::uint8_t {
+  none,         ///< measured
+  missing,      ///< NaN: no message, or a message that calls itself invalid
+  repeated,     ///< all values equal the last ones to the last bit: no new measurement
+  zero,         ///< all values are exactly 0, while the vehicle moves or its commands would move it
+  frozen,       ///< constant to the last bit for too long, while the vehicle moves
+  implausible,  ///< beyond three standard deviations: moves the estimate little
+};
+
+inline constexpr std::size_t kVelocityFaults = 6;  ///< number of VelocityFault values
+
+/// "zero", "frozen", …
+std::string_view fault_name(VelocityFault fault);
 
 /// The way of the vehicle since the start of an outage, in the frame of heading() = 0.
 struct Drift {
@@ -47,19 +70,31 @@ struct Drift {
 ///
 ///     ν̇ = a(ν − Rᵀc, n) + d − ω × Rᵀc,   ḋ = −d/τ + w,   ċ = w_c,   ṗ = R ν,   ψ̇ = r.
 ///
-/// In an outage d fades and c stays. The next measurement is weighted by both covariances. A
-/// measurement beyond three standard deviations moves the estimate by three standard deviations at
-/// most, so that neither an outlier nor a long outage makes the estimate jump; the fourth such
-/// measurement in succession is accepted as measured.
+/// In an outage d fades and c stays. The next measurement is weighted by both covariances. No
+/// measurement moves a velocity by more than three of its standard deviations (deviation(), before
+/// the measurement), so that neither an outlier nor a long outage makes the estimate jump. After
+/// three measurements in succession beyond three standard deviations that agree with one another,
+/// the standard deviations grow to the error found, and the fourth measurement is blended in.
+///
+/// Recognised without a message's own word (`checks`): values that repeat the last ones to the last
+/// bit are no new measurement, as of a sensor whose driver holds values. Exact zeros of all
+/// velocities but the yaw rate are a fault at once where the estimate is beyond three standard
+/// deviations from 0, or the equations of motion at rest expect an acceleration beyond three of
+/// their errors. Constant values that aren't 0 within the noise are frozen after 0.5 s, or three
+/// times the longest hold seen before. A vehicle at rest with exactly constant values (a simulator,
+/// a coarse resolution) counts as not measured for 3 s, and as measured from then on, until the
+/// commands would move it.
 ///
 /// Calibration: while velocities are measured, outages are simulated in parallel, and the process
 /// noise is set so that the predicted covariance matches the errors at the end of the outages
-/// (noise_factor()); the ellipse of drift() is widened by age as practised outages ask. Three
+/// (noise_factor()); the ellipse of drift() and the covariance of velocities are widened by age as
+/// practised outages ask. Three
 /// filters run: without a current, with a constant current, with a random walk. From the fifth
 /// outage on, the filter with the least error is used; a richer hypothesis needs less than 0.7 of
 /// the error of a simpler hypothesis.
 ///
-/// Velocities stay within the range seen, widened by half its width.
+/// Velocities stay within the range seen in learning and in measurements, widened by half its
+/// width.
 /// Cost: 4 + 2 · states accelerations per step and filter, twice with simulated outages. Allocates
 /// in the constructor and in copies only. One thread at a time.
 class DeadReckoning {
@@ -73,9 +108,10 @@ class DeadReckoning {
   DeadReckoning& operator=(DeadReckoning&& other) noexcept;  ///< As above.
 
   /// Advances to the time t [s] and the inputs x of the model; NaN: velocity not measured. A
-  /// command that isn't finite keeps its previous value. `covariance` of the measured velocities,
-  /// row-major over all states; default: the noise known to the model. Starts at the first sample
-  /// with all velocities. Where time doesn't advance, only the measurement counts. Throws
+  /// command that isn't finite keeps its previous value. Velocities may come in samples of their
+  /// own, as from a velocity log and a gyro. `covariance` of the measured velocities, row-major
+  /// over all states; default: the noise known to the model. Starts once every velocity was
+  /// measured within a second. Where time doesn't advance, only the measurement counts. Throws
   /// InputError on spans of another size, a time that isn't finite, and a step of more than
   /// Rollout::kMostSteps steps; the state is unchanged then.
   void update(std::span<const double> x, double t, std::span<const double> covariance = {});
@@ -85,9 +121,17 @@ class DeadReckoning {
   /// numbers that aren't finite, and on a deviation <= 0.
   void measured_heading(double heading, double deviation);
 
+  /// Goes on with another model of the same inputs and velocities, such as a later state of a
+  /// learner: estimate, practice and current stay. Allocates. Throws InputError on other inputs or
+  /// velocities.
+  void use(const OpenLoop& model);
+
   std::size_t states() const;  ///< Number of velocities.
-  bool started() const;        ///< After the first sample with all velocities.
-  double silent_s() const;     ///< Time since a velocity except the yaw rate was measured.
+  bool started() const;        ///< After the first samples with all velocities.
+  double silent_s() const;     ///< Time since the velocity log measured a velocity.
+  VelocityFault fault(std::size_t state) const;  ///< Of the last sample.
+  /// Largest change of a velocity by the last sample's measurement, in standard deviations before.
+  double step() const;
   double velocity(std::size_t state) const;  ///< Over ground, in the unit of the log.
   double covariance(std::size_t row, std::size_t column) const;  ///< Covariance of two velocities.
   double deviation(std::size_t state) const;    ///< Standard deviation of a velocity.

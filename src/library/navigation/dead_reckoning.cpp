@@ -10,6 +10,7 @@
 #include "kelpie/core/error.hpp"
 #include "navigation/practice.hpp"
 #include "navigation/tuning.hpp"
+#include "navigation/velocity_check.hpp"
 #include "navigation/velocity_filter.hpp"
 
 namespace kelpie {
@@ -25,6 +26,13 @@ struct Measured {
   std::size_t count = 0;
 
   std::span<const Index> all() const { return std::span(which).first(count); }
+};
+
+using Velocities = std::array<double, VelocityFilter::kMostVelocities>;
+
+struct Estimate {
+  Velocities velocity{};
+  Velocities deviation{};
 };
 
 // One belief about the water, its filter and what it learned in practice.
@@ -50,12 +58,20 @@ struct DeadReckoning::State {
   std::vector<Hypothesis> hypotheses;  ///< without a current, with a constant, a wandering one
   std::size_t believed = 0;
   DeadReckoningSettings settings;
+  VelocityCheck check;
+  VelocityCheck::Faults faults{};  ///< of the last sample
+  std::vector<double> sample;      ///< the last sample; NaN: no velocity was measured
   bool started = false;
   double time_s = 0.0;
   double apart_share = 0.0;  ///< of late, samples that no hypothesis joins to the one before
   double heard_s = 0.0;      ///< when a velocity other than the yaw rate was measured last
+  double step = 0.0;
+  Velocities first{};    ///< before the start: the last value of each velocity
+  Velocities first_s{};  ///< and its time
 
-  State(const OpenLoop& model, const DeadReckoningSettings& given) : settings(given) {
+  State(const OpenLoop& model, const DeadReckoningSettings& given)
+      : settings(given), sample(model.seen.size()) {
+    first_s.fill(-std::numeric_limits<double>::infinity());
     const bool current = given.planar && given.current_m_s > 0.0;
     const bool choice = given.practice_s > 0.0;
     if (!current || choice) {
@@ -70,7 +86,15 @@ struct DeadReckoning::State {
   }
 
   const VelocityFilter& filter() const { return hypotheses[believed].filter; }
+  std::size_t states() const { return static_cast<std::size_t>(filter().velocities()); }
   double silent_s() const { return time_s - heard_s; }
+  double deviation(Index i) const {
+    return widening() * std::sqrt(std::max(filter().covariance()(i, i), 0.0));
+  }
+  double widening() const {
+    const double age_s = silent_s();
+    return age_s > 0.0 ? hypotheses[believed].practice.velocity_widening(age_s) : 1.0;
+  }
 
   Measured measured_in(std::span<const double> x) const {
     Measured measured;
@@ -103,25 +127,83 @@ struct DeadReckoning::State {
     return noise;
   }
 
-  // Whether more than a gyro is heard.
-  bool hears(const Measured& measured) const {
-    return std::ranges::any_of(measured.all(), [&](Index i) { return !settings.planar || i != 2; });
+  bool is_of_log(Index i) const { return filter().is_of_log(i); }
+
+  Index of_log() const {
+    Index count = 0;
+    for (Index i = 0; i < filter().velocities(); ++i) {
+      count += is_of_log(i) ? 1 : 0;
+    }
+    return count;
   }
 
-  void update(std::span<const double> x, double t, const Measured& measured,
-              const VelocityFilter::Matrix& noise) {
+  // Whether more than a gyro is heard.
+  bool hears(const Measured& measured) const {
+    return std::ranges::any_of(measured.all(), [&](Index i) { return is_of_log(i); });
+  }
+
+  // The inputs with NaN in place of what wasn't measured.
+  void take(std::span<const double> given, double t) {
+    sample.assign(given.begin(), given.end());
+    faults = {};
+    if (settings.checks && started) {
+      faults = check.judge(sample, std::max(t, time_s), hypotheses[believed].filter);
+    }
+    for (std::size_t i = 0; i < states(); ++i) {
+      double& value = sample[filter().model().states[i]];
+      if (!std::isfinite(value)) {
+        faults[i] = VelocityFault::missing;
+      } else if (faults[i] != VelocityFault::none) {
+        value = std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+  }
+
+  // Puts the last velocities into the sample; whether all are known and the commands, too.
+  bool gather(double t) {
+    bool is_whole = true;
+    for (std::size_t i = 0; i < states(); ++i) {
+      double& value = sample[filter().model().states[i]];
+      if (std::isfinite(value)) {
+        first[i] = value;
+        first_s[i] = t;
+      }
+      is_whole = is_whole && std::abs(t - first_s[i]) <= kNavigationTuning.check.most_apart_s;
+      value = first[i];
+    }
+    return is_whole &&
+           std::ranges::all_of(sample, [](double value) { return std::isfinite(value); });
+  }
+
+  void start(double t, std::span<const double> covariance) {
+    const VelocityFilter::Matrix noise = noise_of(measured_in(sample), covariance);
+    for (Hypothesis& one : hypotheses) {
+      one.filter.start(sample, noise);
+    }
+    started = true;
+    time_s = heard_s = t;
+  }
+
+  void update(double t, const Measured& measured, const VelocityFilter::Matrix& noise) {
     const double dt_s = std::max(t - time_s, 0.0);
     VelocityFilter::Vector values(static_cast<Index>(measured.count));
     for (Index i = 0; i < values.size(); ++i) {
-      values(i) = x[filter().model().states[static_cast<std::size_t>(
+      values(i) = sample[filter().model().states[static_cast<std::size_t>(
           measured.which[static_cast<std::size_t>(i)])]];
     }
-    const bool complete = static_cast<Index>(measured.count) == filter().velocities();
     const bool heard = hears(measured);
-    const bool gyro_alone = !heard && measured.count > 0;
+    const bool complete =
+        std::ranges::count_if(measured.all(), [&](Index i) { return is_of_log(i); }) == of_log();
+    const bool gyro_alone =
+        settings.planar && !heard && measured.count == 1 && measured.which[0] == 2;
+    const bool lost = t - heard_s > std::max(kNavigationTuning.check.longest_gap_s, dt_s) && !heard;
     double least_off = std::numeric_limits<double>::infinity();
     for (auto& [one, practice] : hypotheses) {
-      one.predict(x, dt_s, practice.factor());
+      one.predict(sample, dt_s, practice.factor());
+    }
+    time_s = std::max(time_s, t);
+    const Estimate before = estimate();
+    for (auto& [one, practice] : hypotheses) {
       if (gyro_alone) {
         one.take_yaw_rate(values(0), noise(0, 0));
       } else if (measured.count > 0) {
@@ -133,15 +215,45 @@ struct DeadReckoning::State {
     apart_share += kChoice.apart_memory * ((apart ? 1.0 : 0.0) - apart_share);
     const bool cut = apart && apart_share < kChoice.most_apart;
     for (auto& [one, practice] : hypotheses) {
-      practice.follow(one, x, dt_s, complete && !cut);
+      practice.follow(one, sample, dt_s, complete && !cut, lost || cut);
       if (heard && one.planar()) {
         one.forget_position();
       }
     }
-    time_s = std::max(time_s, t);
+    note_doubts(measured);
     if (heard) {
       heard_s = time_s;
       believe();
+    }
+    note_step(before);
+  }
+
+  void note_doubts(const Measured& measured) {
+    for (const Index i : measured.all()) {
+      if (is_of_log(i) && filter().doubtful()) {
+        faults[static_cast<std::size_t>(i)] = VelocityFault::implausible;
+      }
+    }
+  }
+
+  Estimate estimate() const {
+    Estimate now;
+    for (Index i = 0; i < filter().velocities(); ++i) {
+      now.velocity[static_cast<std::size_t>(i)] = filter().mean()(i);
+      now.deviation[static_cast<std::size_t>(i)] = deviation(i);
+    }
+    return now;
+  }
+
+  // Of the velocities of the log: a gyro is taken as measured.
+  void note_step(const Estimate& before) {
+    step = 0.0;
+    for (Index i = 0; i < filter().velocities(); ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      if (is_of_log(i) && before.deviation[place] > 0.0) {
+        step = std::max(
+            step, std::abs(filter().mean()(i) - before.velocity[place]) / before.deviation[place]);
+      }
     }
   }
 
@@ -160,6 +272,12 @@ struct DeadReckoning::State {
   }
 };
 
+std::string_view fault_name(VelocityFault fault) {
+  constexpr std::array<std::string_view, kVelocityFaults> kNames{"none", "missing", "repeated",
+                                                                 "zero", "frozen",  "implausible"};
+  return kNames[static_cast<std::size_t>(fault)];
+}
+
 void DeadReckoningSettings::validate(std::size_t states) const {
   require(step_s > 0.0 && std::isfinite(step_s), "step", "has to be > 0 s");
   require(!planar || states >= 3, "planar",
@@ -167,6 +285,9 @@ void DeadReckoningSettings::validate(std::size_t states) const {
   require(current_m_s >= 0.0 && std::isfinite(current_m_s), "current", "has to be >= 0 m/s");
   require(current_wander >= 0.0 && std::isfinite(current_wander), "current_wander",
           "has to be >= 0 m/s/√s");
+  for (const std::size_t rate : rates) {
+    require(rate < states, "rates", "have to be velocities of the model");
+  }
   require(practice_s >= 0.0 && std::isfinite(practice_s), "practice", "has to be >= 0 s");
 }
 
@@ -192,7 +313,7 @@ DeadReckoning& DeadReckoning::operator=(const DeadReckoning& other) {
 void DeadReckoning::update(std::span<const double> x, double t,
                            std::span<const double> covariance) {
   State& s = *state_;
-  const auto states = static_cast<std::size_t>(s.filter().velocities());
+  const std::size_t states = s.states();
   require_size("x", x.size(), s.filter().model().seen.size());
   if (!covariance.empty()) {
     require_size("covariance", covariance.size(), states * states);
@@ -200,18 +321,25 @@ void DeadReckoning::update(std::span<const double> x, double t,
   require(std::isfinite(t), "t", "has to be finite");
   require(!s.started || t - s.time_s <= Rollout::kMostSteps * s.settings.step_s, "t",
           "has to be at most a million steps of the integrator after the last");
-  const Measured measured = s.measured_in(x);
-  const VelocityFilter::Matrix noise = s.noise_of(measured, covariance);
-  require(noise.allFinite(), "covariance", "has to be finite");
+  if (!covariance.empty()) {
+    require(s.noise_of(s.measured_in(x), covariance).allFinite(), "covariance", "has to be finite");
+  }
+  s.take(x, t);
   if (s.started) {
-    s.update(x, t, measured, noise);
-  } else if (measured.count == states &&
-             std::ranges::all_of(x, [](double value) { return std::isfinite(value); })) {
-    for (Hypothesis& one : s.hypotheses) {
-      one.filter.start(x, noise);
-    }
-    s.started = true;
-    s.time_s = s.heard_s = t;
+    const Measured measured = s.measured_in(s.sample);
+    s.update(t, measured, s.noise_of(measured, covariance));
+  } else if (s.gather(t)) {
+    s.start(t, covariance);
+  }
+}
+
+void DeadReckoning::use(const OpenLoop& model) {
+  const OpenLoop& old = state_->filter().model();
+  require_size("seen", model.seen.size(), old.seen.size());
+  require(model.states == old.states, "states", "have to be those of the first model");
+  for (auto& [filter, practice] : state_->hypotheses) {
+    filter.use(model);
+    practice.use(model);
   }
 }
 
@@ -230,7 +358,7 @@ void DeadReckoning::measured_heading(double heading, double deviation) {
 }
 
 std::size_t DeadReckoning::states() const {
-  return static_cast<std::size_t>(state_->filter().velocities());
+  return state_->states();
 }
 
 bool DeadReckoning::started() const {
@@ -241,12 +369,22 @@ double DeadReckoning::silent_s() const {
   return state_->silent_s();
 }
 
+VelocityFault DeadReckoning::fault(std::size_t state) const {
+  return state_->faults[state];
+}
+
+double DeadReckoning::step() const {
+  return state_->step;
+}
+
 double DeadReckoning::velocity(std::size_t state) const {
   return state_->filter().mean()(static_cast<Index>(state));
 }
 
 double DeadReckoning::covariance(std::size_t row, std::size_t column) const {
-  return state_->filter().covariance()(static_cast<Index>(row), static_cast<Index>(column));
+  const double widening = state_->widening();
+  return widening * widening *
+         state_->filter().covariance()(static_cast<Index>(row), static_cast<Index>(column));
 }
 
 double DeadReckoning::deviation(std::size_t state) const {

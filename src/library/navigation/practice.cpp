@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/quantile.hpp"
 #include "navigation/tuning.hpp"
@@ -30,7 +31,8 @@ Practice::Practice(const VelocityFilter& filter, double length_s)
       length_s_(length_s),
       as_heard_(filter.model().seen.size()),
       sizes_{RecentValues(kPractice.outages), RecentValues(kPractice.outages),
-             RecentValues(kPractice.outages)} {}
+             RecentValues(kPractice.outages)},
+      speeds_(sizes_) {}
 
 double Practice::age_to_score(std::size_t i) const {
   return length_s_ * std::array{kPractice.early, 1.0, kPractice.longer}[i];
@@ -43,16 +45,16 @@ Eigen::Vector2d Practice::in_world(const VelocityFilter& teacher, std::span<cons
 }
 
 void Practice::follow(const VelocityFilter& teacher, std::span<const double> x, double dt_s,
-                      bool heard) {
+                      bool heard, bool lost) {
   if (length_s_ == 0.0) {
     return;
   }
-  if (!heard || dt_s > kPractice.gap * length_s_) {
+  if (lost || dt_s > kPractice.gap * length_s_) {
     running_ = false;
-  } else if (!running_ && !teacher.doubtful()) {
-    begin(teacher, x);
   } else if (running_) {
-    go_on(teacher, x, dt_s);
+    go_on(teacher, x, dt_s, heard);
+  } else if (heard && !teacher.doubtful()) {
+    begin(teacher, x);
   }
 }
 
@@ -61,6 +63,7 @@ void Practice::begin(const VelocityFilter& teacher, std::span<const double> x) {
   running_ = true;
   ++begun_;
   age_s_ = 0.0;
+  heard_s_ = 0.0;
   next_ = 0;
   if (pupil_.planar()) {
     pupil_.forget_position();
@@ -70,7 +73,8 @@ void Practice::begin(const VelocityFilter& teacher, std::span<const double> x) {
   }
 }
 
-void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, double dt_s) {
+void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, double dt_s,
+                     bool heard) {
   as_heard_.assign(x.begin(), x.end());
   for (Eigen::Index i = 0; i < pupil_.velocities(); ++i) {
     if (!pupil_.planar() || i != 2) {
@@ -81,33 +85,40 @@ void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, d
   pupil_.predict(as_heard_, dt_s, factor_);
   age_s_ += dt_s;
   if (pupil_.planar()) {
-    const Eigen::Vector2d now = in_world(teacher, x);
-    const std::vector<double>& noise = pupil_.model().noise;
-    way_ += 0.5 * dt_s * (before_ + now);
-    way_variance_ += 0.5 * dt_s * dt_s * (noise[0] * noise[0] + noise[1] * noise[1]);
-    before_ = now;
     pupil_.take_yaw_rate(teacher.mean()(2), teacher.covariance()(2, 2));
   }
+  if (!heard) {
+    return;
+  }
+  const double step_s = age_s_ - std::exchange(heard_s_, age_s_);
+  if (pupil_.planar()) {
+    const Eigen::Vector2d now = in_world(teacher, x);
+    const std::vector<double>& noise = pupil_.model().noise;
+    way_ += 0.5 * step_s * (before_ + now);
+    way_variance_ += 0.5 * step_s * step_s * (noise[0] * noise[0] + noise[1] * noise[1]);
+    before_ = now;
+  }
   if (age_s_ >= age_to_score(next_)) {
-    judge(teacher);
+    judge(teacher, x);
     ++next_;
     running_ = next_ < (begun_ % kPractice.every == 0 ? kAges : kAges - 1);
   }
 }
 
-double Practice::widening(double age_s) const {
+double Practice::factor_at(const Sizes& sizes, double age_s) const {
   double before_age_s = 0.0;
   double before = 1.0;
   for (std::size_t i = 0; i < kAges; ++i) {
-    if (sizes_[i].size() < kPractice.least) {
+    if (sizes[i].size() < kPractice.least) {
       continue;
     }
-    std::array<double, kPractice.outages> sizes{};
-    const double bound = conformal_bound(sizes_[i].copy_to(sizes), kCoverage);
+    std::array<double, kPractice.outages> recent{};
+    const double bound = conformal_bound(sizes[i].copy_to(recent), kCoverage);
     const double age = age_to_score(i);
     if (age_s <= age) {
-      const double share =
-          before_age_s > 0.0 ? std::log(age_s / before_age_s) / std::log(age / before_age_s) : 1.0;
+      const double share = before_age_s > 0.0
+                               ? std::log(age_s / before_age_s) / std::log(age / before_age_s)
+                               : age_s / age;
       return before + share * (bound - before);
     }
     before_age_s = age;
@@ -117,7 +128,7 @@ double Practice::widening(double age_s) const {
 }
 
 // The factor is followed as Robbins and Monro 1951 do.
-void Practice::judge(const VelocityFilter& teacher) {
+void Practice::judge(const VelocityFilter& teacher, std::span<const double> x) {
   const Eigen::Index values = pupil_.planar() ? 2 : pupil_.velocities();
   const Eigen::Index first = pupil_.planar() ? pupil_.position() : 0;
   VelocityFilter::Vector off = pupil_.mean().segment(first, values);
@@ -135,11 +146,28 @@ void Practice::judge(const VelocityFilter& teacher) {
   }
   const double edge = ninety_percent(values);
   sizes_[next_].add(std::sqrt(std::max(square, 0.0) / edge));
+  judge_velocities(x);
   if (next_ == 1) {
     ++judged_;
     error_ += std::max(1.0 / static_cast<double>(judged_), kPractice.share) * (off.norm() - error_);
     factor_ *= std::exp(kPractice.gain * (square > edge ? kCoverage : kCoverage - 1.0));
     factor_ = std::clamp(factor_, kPractice.least_factor, kPractice.most_factor);
+  }
+}
+
+// Of surge and sway in planar motion; else of all.
+void Practice::judge_velocities(std::span<const double> x) {
+  const Eigen::Index values = pupil_.planar() ? 2 : pupil_.velocities();
+  VelocityFilter::Vector off = pupil_.mean().head(values);
+  VelocityFilter::Matrix expected = pupil_.covariance().topLeftCorner(values, values);
+  for (Eigen::Index i = 0; i < values; ++i) {
+    const auto state = static_cast<std::size_t>(i);
+    off(i) -= x[pupil_.model().states[state]];
+    expected(i, i) += pupil_.model().noise[state] * pupil_.model().noise[state];
+  }
+  const double square = off.dot(VelocityFilter::Vector(expected.ldlt().solve(off)));
+  if (std::isfinite(square)) {
+    speeds_[next_].add(std::sqrt(std::max(square, 0.0) / ninety_percent(values)));
   }
 }
 

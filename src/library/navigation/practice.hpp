@@ -21,16 +21,24 @@ class Practice {
   /// Outages of `length_s` seconds; 0: none.
   Practice(const VelocityFilter& filter, double length_s);
 
-  /// Follows `teacher` after one sample; a sample without all velocities (`heard`) ends the outage
-  /// without a score.
-  void follow(const VelocityFilter& teacher, std::span<const double> x, double dt_s, bool heard);
+  /// Follows `teacher` after one sample. `heard`: all velocities (but the yaw rate) were measured
+  /// in the sample; only such samples begin and score an outage. `lost`: velocities are silent for
+  /// too long, or the log was cut; ends the outage without a score.
+  void follow(const VelocityFilter& teacher, std::span<const double> x, double dt_s, bool heard,
+              bool lost);
+
+  /// Goes on with another model of the same inputs and velocities. Allocates.
+  void use(const OpenLoop& model) { pupil_.use(model); }
 
   /// Factor on the variance of the model's errors.
   double factor() const { return factor_; }
 
   /// Factor on the standard deviations of the position after an outage of so many seconds, or of
   /// the velocities, where motion isn't planar.
-  double widening(double age_s) const;
+  double widening(double age_s) const { return factor_at(sizes_, age_s); }
+
+  /// The same on the standard deviations of the velocities.
+  double velocity_widening(double age_s) const { return factor_at(speeds_, age_s); }
 
   int judged() const { return judged_; }   ///< Outages so far.
   double error() const { return error_; }  ///< Mean error at the end of outages.
@@ -38,11 +46,15 @@ class Practice {
  private:
   static constexpr std::size_t kAges = 3;
 
+  using Sizes = std::array<RecentValues, kAges>;
+
   double age_to_score(std::size_t i) const;
+  double factor_at(const Sizes& sizes, double age_s) const;
   Eigen::Vector2d in_world(const VelocityFilter& teacher, std::span<const double> x) const;
   void begin(const VelocityFilter& teacher, std::span<const double> x);
-  void go_on(const VelocityFilter& teacher, std::span<const double> x, double dt_s);
-  void judge(const VelocityFilter& teacher);
+  void go_on(const VelocityFilter& teacher, std::span<const double> x, double dt_s, bool heard);
+  void judge(const VelocityFilter& teacher, std::span<const double> x);
+  void judge_velocities(std::span<const double> x);
 
   VelocityFilter pupil_;
   double length_s_;
@@ -54,7 +66,9 @@ class Practice {
   double way_variance_ = 0.0;                         ///< of the way, by the noise of velocities
   std::size_t next_ = 0;                              ///< the next age to score
   int begun_ = 0;                                     ///< outages
-  std::array<RecentValues, kAges> sizes_;             ///< of errors, 1: on the 90 % ellipse, by age
+  double heard_s_ = 0.0;                              ///< age at the last measured velocities
+  Sizes sizes_;                                       ///< of errors, 1: on the 90 % ellipse, by age
+  Sizes speeds_;                                      ///< the same of velocities
   double factor_ = 1.0;
   int judged_ = 0;
   double error_ = 0.0;

@@ -32,12 +32,27 @@ inline constexpr struct NavigationTuning {
     double most_factor = 100.0;  ///< of the noise factor; by hand
   } practice;
 
+  /// Velocities that a sensor didn't measure (navigation/velocity_check.hpp); by hand.
+  struct Check {
+    double frozen_s = 0.5;        ///< s, least time of constant values that aren't 0
+    double usual_hold = 3.0;      ///< times the usual time between two changes
+    double hold_memory = 0.1;     ///< weight of the last change in that time
+    double rest_s = 3.0;          ///< s, of constant values at rest, until they count
+    double sigmas = 3.0;          ///< of an estimate, an acceleration or noise: a contradiction
+    double most_apart_s = 1.0;    ///< s, between velocities at the start
+    double longest_gap_s = 2.0;   ///< s, without a measurement, until practice ends
+    std::size_t least_equal = 4;  ///< equal values of one velocity while others change
+  } check;
+
   /// The Kalman filter (navigation/velocity_filter.hpp).
   struct Filter {
     double least_time_s = 0.5;  ///< s, of an error: two steps of a quarter second
     double most_time_s = 2.0;   ///< s, of an error; docs/dead_reckoning.md
     double furthest = 9.0;      ///< squared deviations of a measurement: 3 standard deviations
+    double most_step = 3.0;     ///< standard deviations that a measurement moves a velocity
     int most_doubts = 3;        ///< measurements beyond, before the filter accepts them; by hand
+    double agreeing = 0.5;      ///< of a doubtful error: two such measurements agree; by hand
+    double sure = 2.0;          ///< standard deviations of an error found so; by hand
   } filter;
 } kNavigationTuning;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "model/seen_velocities.hpp"
 #include "navigation/tuning.hpp"
@@ -25,15 +26,23 @@ VelocityFilter::VelocityFilter(const OpenLoop& model, const DeadReckoningSetting
       planar_(settings.planar),
       mean_(Vector::Zero(2 * velocities_ + (planar_ ? kPlanar : 0))),
       covariance_(Matrix::Zero(mean_.size(), mean_.size())),
+      doubted_(Vector::Constant(mean_.size(), std::numeric_limits<double>::quiet_NaN())),
       from_(model.seen.size()),
       to_(from_),
-      at_(from_) {}
+      at_(from_) {
+  of_log_.fill(true);
+  of_log_[2] = !planar_;
+  for (const std::size_t rate : settings.rates) {
+    of_log_[rate] = false;
+  }
+}
 
 void VelocityFilter::start(std::span<const double> x, const Matrix& noise) {
   to_.assign(x.begin(), x.end());
   mean_.setZero();
   covariance_.setZero();
   doubts_ = 0;
+  doubted_.setConstant(std::numeric_limits<double>::quiet_NaN());
   covariance_.topLeftCorner(velocities_, velocities_) = noise;
   for (Eigen::Index i = 0; i < velocities_; ++i) {
     const auto state = static_cast<std::size_t>(i);
@@ -49,7 +58,17 @@ void VelocityFilter::join(const VelocityFilter& other) {
   mean_ = other.mean_;
   covariance_ = other.covariance_;
   doubts_ = other.doubts_;
+  doubted_ = other.doubted_;
   to_ = other.to_;
+}
+
+void VelocityFilter::use(const OpenLoop& model) {
+  const std::vector<Extremes> seen = model_.seen;
+  model_ = model;
+  for (const std::size_t state : model_.states) {
+    Extremes& range = model_.seen[state];
+    range = {std::min(range.low, seen[state].low), std::max(range.high, seen[state].high)};
+  }
 }
 
 void VelocityFilter::predict(std::span<const double> x, double dt_s, double factor) {
@@ -83,22 +102,88 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   if (!std::isfinite(distance) || !factored.isPositive()) {
     return 0.0;
   }
-  doubts_ = distance > kFilter.furthest ? doubts_ + 1 : 0;
-  if (doubts_ > kFilter.most_doubts) {
-    take_over(which, values, noise);
-    return distance;
-  }
+  const bool is_far = distance > kFilter.furthest;
+  doubts_ = !is_far ? 0 : agrees(which, missing) ? doubts_ + 1 : 1;
   // As if the measurement were so much worse that it is just believable.
-  const double doubt = std::max(1.0, distance / kFilter.furthest);
-  Matrix gain = factored.solve(Matrix(cross.transpose())).transpose() / doubt;
-  if (doubt > 1.0 && planar_) {
+  double doubt = std::max(1.0, distance / kFilter.furthest);
+  Matrix gain = factored.solve(Matrix(cross.transpose())).transpose();
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    const double most = kFilter.most_step * std::sqrt(std::max(covariance_(i, i), 0.0));
+    const double move = std::abs(gain.row(i).dot(missing));
+    doubt = move > most * doubt ? move / most : doubt;
+  }
+  gain /= doubt;
+  if (is_far && planar_) {
     gain.middleRows(current(), 2).setZero();  // a cut or a wild ping tells nothing of the water
   }
   mean_ += gain * missing;
   const Matrix told = gain * cross.transpose();
   covariance_ += gain * (doubt * expected) * gain.transpose() - told - told.transpose();
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index state = which[static_cast<std::size_t>(i)];
+    doubted_(state) = is_far ? values(i) - mean_(state) : std::numeric_limits<double>::quiet_NaN();
+  }
+  if (!is_far) {
+    extend_range(which, values);
+  } else if (doubts_ >= kFilter.most_doubts) {
+    extend_range(which, values);
+    loosen(which, missing);
+  }
   return distance;
+}
+
+// The errors of two outliers in succession are alike: the vehicle is elsewhere.
+bool VelocityFilter::agrees(std::span<const Eigen::Index> which, const Vector& missing) const {
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    const double now = missing(static_cast<Eigen::Index>(i));
+    const double before = doubted_(which[i]);
+    const double width = std::sqrt(std::max(covariance_(which[i], which[i]), 0.0));
+    const double most = std::max(kFilter.agreeing * std::abs(now), kFilter.most_step * width);
+    if (std::isnan(before) || std::abs(now - before) > most) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The error found counts as two standard deviations; nothing else is concluded.
+void VelocityFilter::loosen(std::span<const Eigen::Index> which, const Vector& missing) {
+  Vector scale = Vector::Ones(mean_.size());
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    const double deviation = std::sqrt(std::max(covariance_(which[i], which[i]), 1e-300));
+    const double found = std::abs(missing(static_cast<Eigen::Index>(i))) / kFilter.sure;
+    scale(which[i]) = std::max(1.0, found / deviation);
+  }
+  Matrix block = covariance_;
+  for (const Eigen::Index i : which) {
+    covariance_.row(i).setZero();
+    covariance_.col(i).setZero();
+  }
+  for (const Eigen::Index i : which) {
+    for (const Eigen::Index k : which) {
+      covariance_(i, k) = scale(i) * scale(k) * block(i, k);
+    }
+  }
+}
+
+void VelocityFilter::extend_range(std::span<const Eigen::Index> which, const Vector& values) {
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    if (which[i] < velocities_) {
+      Extremes& range = model_.seen[model_.states[static_cast<std::size_t>(which[i])]];
+      const double value = values(static_cast<Eigen::Index>(i));
+      range = {std::min(range.low, value), std::max(range.high, value)};
+    }
+  }
+}
+
+VelocityFilter::Vector VelocityFilter::expected_rates(std::span<const double> velocities) {
+  Vector s = mean_;
+  for (Eigen::Index i = 0; i < velocities_; ++i) {
+    const double given = velocities[static_cast<std::size_t>(i)];
+    s(i) = std::isfinite(given) ? given : s(i);
+  }
+  return rate(s, 1.0).head(velocities_);
 }
 
 void VelocityFilter::take_over(std::span<const Eigen::Index> which, const Vector& values,
@@ -114,7 +199,6 @@ void VelocityFilter::take_over(std::span<const Eigen::Index> which, const Vector
           noise(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
     }
   }
-  doubts_ = 0;
 }
 
 void VelocityFilter::take_yaw_rate(double value, double variance) {

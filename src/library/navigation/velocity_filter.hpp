@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -31,13 +32,21 @@ class VelocityFilter {
   /// Predicts by dt_s to the commands of x; `factor` on the process noise.
   void predict(std::span<const double> x, double dt_s, double factor);
 
+  /// Goes on with another model of the same inputs and velocities. Allocates.
+  void use(const OpenLoop& model);
+
   /// Corrects by measured values of the states `which` (of s) with their covariance. Returns the
-  /// squared Mahalanobis distance per value. Accepts the fourth outlier in succession as measured.
+  /// squared Mahalanobis distance per value. No velocity moves by more than three standard
+  /// deviations; the third outlier in succession that agrees with those before widens them.
   double correct(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
 
   /// Sets the yaw rate measured in planar motion, without a correction of surge and sway: a
   /// correction by the model's slopes made dead reckoning on a real log worse.
   void take_yaw_rate(double value, double variance);
+
+  /// Rates of the velocities that the equations of motion expect at these velocities (NaN: the
+  /// estimate's), under the last commands.
+  Vector expected_rates(std::span<const double> velocities);
 
   /// Whether the last measurement was an outlier.
   bool doubtful() const { return doubts_ > 0; }
@@ -46,6 +55,10 @@ class VelocityFilter {
 
   Eigen::Index velocities() const { return velocities_; }
   bool planar() const { return planar_; }
+  /// Whether the velocity log measures the velocity, and no gyro of its own.
+  bool is_of_log(Eigen::Index velocity) const {
+    return of_log_[static_cast<std::size_t>(velocity)];
+  }
   Eigen::Index current() const { return 2 * velocities_; }
   Eigen::Index position() const { return current() + 2; }
   Eigen::Index heading() const { return current() + 4; }
@@ -61,6 +74,9 @@ class VelocityFilter {
   void add_noise(double step_s, double factor);
   void keep_in_range();
   void take_over(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
+  bool agrees(std::span<const Eigen::Index> which, const Vector& missing) const;
+  void loosen(std::span<const Eigen::Index> which, const Vector& missing);
+  void extend_range(std::span<const Eigen::Index> which, const Vector& values);
 
   OpenLoop model_;
   double step_s_;
@@ -69,9 +85,11 @@ class VelocityFilter {
   CommandPath between_;
   Eigen::Index velocities_;
   bool planar_;
+  std::array<bool, kMostVelocities> of_log_{};
   Vector mean_;
   Matrix covariance_;
   int doubts_ = 0;            ///< outliers in succession
+  Vector doubted_;            ///< errors of the last outlier, per state; NaN: none
   bool yaw_given_ = false;    ///< the yaw rate is measured along the step, surge is not
   std::vector<double> from_;  ///< the inputs before
   std::vector<double> to_;    ///< the inputs after

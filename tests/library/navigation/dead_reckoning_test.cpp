@@ -298,5 +298,139 @@ TEST(DeadReckoning, AllocatesNothingAfterItsConstruction) {
   EXPECT_EQ(testing::allocations, before);
 }
 
+// What the velocity log gives in place of a measurement, for so many seconds.
+enum class Broken { zeros, frozen };
+
+// Runs through a fault of the velocity log; the time until the fault has a name, and what is said.
+struct Named {
+  double after_s = kNaN;
+  VelocityFault fault = VelocityFault::none;
+};
+
+Named run_broken(DeadReckoning& reckoning, Water& water, double seconds, Broken how) {
+  Named named;
+  std::array<double, 6> last = water.sample(false);
+  for (int k = 0; k < static_cast<int>(seconds / kStepS); ++k) {
+    water.advance();
+    std::array<double, 6> x = water.sample(false);
+    for (std::size_t i = 0; i < 2; ++i) {
+      x[i] = how == Broken::zeros ? 0.0 : last[i];
+    }
+    reckoning.update(x, water.time_s());
+    const VelocityFault fault = reckoning.fault(0);
+    if (std::isnan(named.after_s) &&
+        (fault == VelocityFault::zero || fault == VelocityFault::frozen)) {
+      named = {.after_s = (k + 1) * kStepS, .fault = fault};
+    }
+  }
+  return named;
+}
+
+TEST(DeadReckoning, RecognisesExactZerosAndAFrozenLogWithinASecondAndReturnsWithoutAJump) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const Broken how : {Broken::zeros, Broken::frozen}) {
+      Water water({0.0, 0.0}, 0.01, seed);
+      DeadReckoning reckoning(linear_vehicle());
+      follow(reckoning, water, 300.0, false);
+      const Named named = run_broken(reckoning, water, 60.0, how);
+      EXPECT_LE(named.after_s, 1.0);
+      EXPECT_EQ(named.fault, how == Broken::zeros ? VelocityFault::zero : VelocityFault::frozen);
+      EXPECT_EQ(reckoning.fault(2), VelocityFault::none);  // of the gyro
+      EXPECT_GE(reckoning.silent_s(), 59.0);
+      EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.1);
+      for (int k = 0; k < 20; ++k) {
+        follow(reckoning, water, kStepS, false);
+        EXPECT_LE(reckoning.step(), 3.0 + 1e-9);
+      }
+      EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.01);
+    }
+  }
+}
+
+// Off, with a covariance far too small: the estimate never jumps beyond what was said before.
+TEST(DeadReckoning, NeverStepsBeyondThreeDeviationsHoweverWrong) {
+  Water water({0.0, 0.0}, 0.001, 11);
+  DeadReckoning reckoning(linear_vehicle(0.0005), {.practice_s = 0.0});
+  follow(reckoning, water, 120.0, false);
+  follow(reckoning, water, 30.0, true);
+  water.velocity[0] += 0.4;  // a collision
+  for (int k = 0; k < 12; ++k) {
+    follow(reckoning, water, kStepS, false);
+    EXPECT_LE(reckoning.step(), 3.0 + 1e-9);
+  }
+  EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.02);
+}
+
+// A simulator's vehicle at rest, to the last bit: not measured for three seconds, then measured.
+TEST(DeadReckoning, AVehicleAtRestIsNotFrozenForLongerThanStated) {
+  DeadReckoning reckoning(linear_vehicle());
+  double t = 0.0;
+  const auto rest = [&](double seconds) {
+    double silent_s = 0.0;
+    for (int k = 0; k < static_cast<int>(seconds / kStepS); ++k, t += kStepS) {
+      reckoning.update(std::array{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, t);
+      silent_s = std::max(silent_s, reckoning.silent_s());
+      EXPECT_NE(reckoning.fault(0), VelocityFault::zero);
+      EXPECT_NE(reckoning.fault(0), VelocityFault::frozen);
+    }
+    return silent_s;
+  };
+  EXPECT_LE(rest(60.0), 3.0);
+  EXPECT_EQ(reckoning.silent_s(), 0.0);
+  EXPECT_LT(reckoning.deviation(0), 0.01);
+  // The thrusters push and the log goes on with zeros: a fault at once.
+  for (int k = 0; k < 2; ++k, t += kStepS) {
+    reckoning.update(std::array{0.0, 0.0, 0.0, 0.1, 0.0, 0.0}, t);
+  }
+  EXPECT_EQ(reckoning.fault(0), VelocityFault::zero);
+}
+
+// A velocity log at 1 Hz, whose driver repeats the value at 4 Hz, and a gyro in samples of its own.
+TEST(DeadReckoning, HeldValuesAreNoNewMeasurementAndNoFault) {
+  Water water({0.0, 0.0}, 0.01, 8);
+  DeadReckoning reckoning(linear_vehicle());
+  std::array<double, 6> held{};
+  int frozen = 0;
+  for (int k = 0; k < 1600; ++k) {
+    water.advance();
+    const std::array<double, 6> x = water.sample(false);
+    held = k % 4 == 0 ? x : held;
+    std::array<double, 6> log = x;
+    std::array<double, 6> gyro = x;
+    log[0] = held[0];
+    log[1] = held[1];
+    log[2] = gyro[0] = gyro[1] = kNaN;
+    reckoning.update(gyro, water.time_s() - 0.01);
+    reckoning.update(log, water.time_s());
+    frozen += k > 200 && reckoning.fault(0) == VelocityFault::frozen ? 1 : 0;
+    if (k > 400) {
+      EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.06);
+    }
+  }
+  EXPECT_TRUE(reckoning.started());
+  EXPECT_EQ(frozen, 0);
+  EXPECT_NE(reckoning.noise_factor(), 1.0);  // practice goes on between held values
+}
+
+TEST(DeadReckoning, GoesOnWithALaterModel) {
+  Water water({0.0, 0.0}, 0.01, 9);
+  DeadReckoning reckoning(linear_vehicle());
+  follow(reckoning, water, 60.0, false);
+  const double before = reckoning.velocity(0);
+  reckoning.use(linear_vehicle(0.02));
+  EXPECT_EQ(reckoning.velocity(0), before);
+  follow(reckoning, water, 60.0, false);
+  EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.01);
+  OpenLoop other = linear_vehicle();
+  other.states = {1, 0, 2};
+  EXPECT_EQ(message_of<InputError>([&] { reckoning.use(other); }),
+            "states: have to be those of the first model");
+}
+
+TEST(DeadReckoning, FaultsHaveNames) {
+  EXPECT_EQ(fault_name(VelocityFault::none), "none");
+  EXPECT_EQ(fault_name(VelocityFault::implausible), "implausible");
+}
+
 }  // namespace
 }  // namespace kelpie::dead_reckoning_test
