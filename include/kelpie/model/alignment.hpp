@@ -39,6 +39,8 @@ struct Actuator {
   void validate() const;  ///< Throws InputError (field) on a number not finite or out of range.
 
   double shaped(double command) const;  ///< e, without lag, rate and delay.
+  /// The command whose shaped() is `effect`: neutral for 0.
+  double command_for(double effect) const;
 
   /// "follows its command in 0.9 s, begins 0.1 s late"; "acts at once".
   std::string text() const;
@@ -92,6 +94,10 @@ struct Alignment {
   /// The alignment with these actuators, by name of the command; other commands act at once. Throws
   /// InputError (the name) on the name of no command. Allocates.
   Alignment with(const std::map<std::string, Actuator>& known) const;
+
+  /// The command of an input whose effect, after lag and delay, is `effect`. Itself for an input
+  /// without an actuator.
+  double command_for(std::string_view input, double effect) const;
 
   bool shifts() const { return rows != 0; }
   bool none() const { return !shifts() && actuators.empty(); }

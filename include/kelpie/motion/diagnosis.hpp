@@ -107,6 +107,22 @@ class Diagnosis {
 
   bool ready() const;  ///< Whether there are enough rows for a reference.
 
+  bool knows_thrust() const;  ///< Whether there was a reference once: for the next two functions.
+  /// What a thruster (an input) at a command does to all axes, at rest: of the vehicle now, with
+  /// the last change as far as it is known, or `nominal`, before any change. Requires
+  /// acceleration and half_width (of 90 % intervals; may be empty) with a value per axis.
+  /// Allocates.
+  void thrust(std::size_t input, double command, bool nominal, std::span<double> acceleration,
+              std::span<double> half_width = {}) const;
+  /// Accelerations at the inputs x of the vehicle now, less those at rest.
+  void accelerations(std::span<const double> x, std::span<double> acceleration) const;
+  std::size_t inputs() const;                      ///< Number of inputs.
+  std::span<const std::size_t> states() const;     ///< The velocities, in the order of the axes.
+  std::span<const std::size_t> body_axes() const;  ///< As constructed.
+  /// Present share of the thrust in the reference of every thruster: of the last change while its
+  /// rows are being gathered, else 1.
+  const std::vector<Cause>& present() const;
+
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
@@ -129,6 +145,96 @@ std::string cause_column(const Cause& cause, const DiagnosisNames& names);
 
 /// "th2 gives 48 % of its thrust (41 to 55 %)".
 std::string cause_text(const Cause& cause, const DiagnosisNames& names);
+
+/// Commands in use of a thruster.
+struct CommandRange {
+  std::size_t input = 0;
+  double least = 0.0;  ///< full astern; 0 is at rest
+  double most = 0.0;   ///< full ahead
+};
+
+/// What a thruster does to all axes at full ahead and full astern, at rest: a column of the
+/// effectiveness matrix on either side.
+struct ThrusterEffect {
+  CommandRange range;
+  std::vector<double> ahead, astern;              ///< accelerations per axis, now
+  std::vector<double> ahead_width, astern_width;  ///< half widths of 90 % intervals
+  std::vector<double> nominal_ahead, nominal_astern;
+  double share = 1.0;  ///< of the nominal thrust, 0: dead
+};
+
+/// The greatest accelerations of an axis at rest, in either direction.
+struct AxisAuthority {
+  double most = 0.0;  ///< whatever the other axes do
+  double least = 0.0;
+  double nominal_most = 0.0;
+  double nominal_least = 0.0;
+  double alone_most = 0.0;  ///< while the other axes are held at 0
+  double alone_least = 0.0;
+
+  double left() const;  ///< Share of the nominal range; 1: all.
+};
+
+/// Commands for wanted accelerations.
+struct Allocation {
+  std::vector<double> commands;  ///< per thruster, in the order of the ranges
+  std::vector<double> reached;   ///< accelerations per axis
+  double missing = 0.0;          ///< largest part that isn't reached, of the nominal range
+};
+
+/// What the thrusters of a vehicle can still do: from the coefficients that a Diagnosis has learned
+/// (its present state is copied) to the effectiveness matrix B, its singular values, the attainable
+/// accelerations (Durham 1993) and commands for wanted accelerations: with shares z of full ahead
+/// and full astern,
+///
+///     min |S⁻¹ (τ − B z)|² + ρ |z|²,   0 ≤ z ≤ 1,
+///
+/// S the nominal range of each axis, ρ = 1e-6, by a primal active set (Nocedal & Wright 2006,
+/// algorithm 16.3; for control allocation Härkegård 2002). A thruster goes ahead or astern, not
+/// both. Thrust is that at rest: inflow isn't in it.
+class Authority {
+ public:
+  /// Throws InputError (diagnosis) before the diagnosis is ready, and (ranges) on an input that is
+  /// no thruster, a number that isn't finite, and a range without 0. Allocates.
+  Authority(const Diagnosis& diagnosis, std::vector<CommandRange> ranges);
+
+  const std::vector<ThrusterEffect>& thrusters() const { return thrusters_; }
+  const std::vector<AxisAuthority>& axes() const { return axes_; }
+  /// Singular values of S⁻¹ B, greatest first, one per axis; and before any change.
+  const std::vector<double>& singular_values() const { return singular_; }
+  const std::vector<double>& nominal_singular_values() const { return nominal_singular_; }
+  /// The axis of the least singular value, where it is below a tenth of its nominal value: hardly
+  /// under control. Else axes().size().
+  std::size_t lost_axis() const { return lost_; }
+
+  /// Commands for accelerations, at rest. Throws InputError (wanted) on another size and numbers
+  /// that aren't finite. Allocates. Cost: O(thrusters³) per change of the active set.
+  Allocation allocate(std::span<const double> wanted) const;
+
+  /// The fastest water from ahead [velocity of the log] in which the vehicle holds its place, at
+  /// most 5; NaN where no axis is surge. Speeds beyond those driven are an extrapolation.
+  double held_current() const { return held_current_; }
+
+  /// "th2 gives 60 % of its thrust: udot 0.80, rdot 0.50 of nominal left; holds a current of 0.30
+  /// m/s". Names in the order of the diagnosis.
+  std::string text(const DiagnosisNames& names) const;
+
+ private:
+  double attainable(std::size_t axis, double sign, bool nominal) const;
+  double attainable_alone(std::size_t axis, double sign) const;
+  void find_singular_values();
+  void find_held_current(const Diagnosis& diagnosis);
+  std::vector<double> shares_for(std::span<const double> wanted) const;
+  double command_for(std::size_t thruster, double share) const;
+
+  std::vector<ThrusterEffect> thrusters_;
+  std::vector<std::array<double, 2>> half_;  ///< share of full thrust at half the command, by side
+  std::vector<AxisAuthority> axes_;
+  std::vector<double> scale_;  ///< S
+  std::vector<double> singular_, nominal_singular_;
+  std::size_t lost_ = 0;
+  double held_current_ = 0.0;
+};
 
 /// The text of a finding: its causes joined by "and"; for an ambiguous change both candidates and
 /// the manoeuvres that separate them; or the statement that no known cause explains the change.

@@ -47,6 +47,14 @@ double Actuator::shaped(double command) const {
   return effect < 0.0 ? astern * effect : effect;
 }
 
+double Actuator::command_for(double effect) const {
+  if (effect == 0.0) {
+    return neutral;
+  }
+  const double off = effect < 0.0 ? effect / astern : effect;
+  return neutral + off + std::copysign(dead_band, off);
+}
+
 ActuatorState::ActuatorState(const Actuator& actuator, double rate_hz) : actuator_(actuator) {
   require(rate_hz > 0.0, "rate", "has to be > 0 rows per second");
   actuator.validate();

@@ -127,6 +127,12 @@ Alignment Alignment::by(double lag_s, std::span<const std::string> inputs,
   return alignment.at(rate_hz);
 }
 
+double Alignment::command_for(std::string_view input, double effect) const {
+  const auto found = std::ranges::find(commands, input);
+  const auto place = static_cast<std::size_t>(found - commands.begin());
+  return place < actuators.size() ? actuators[place].command_for(effect) : effect;
+}
+
 Alignment Alignment::with(const std::map<std::string, Actuator>& known) const {
   Alignment alignment = *this;
   alignment.actuators.assign(known.empty() ? 0 : commands.size(), {});

@@ -121,13 +121,17 @@ double CoefficientMonitor::usual_scatter() const {
 
 // Of the last minute, all thrusters at a time, whatever forces there are.
 void CoefficientMonitor::update_health() {
-  health_.clear();
   const std::span<const double> usual =
       std::span<const double>(usual_).last(explanations_.list().size() + 1);
-  const double spread = kZ90 * std::sqrt(std::max(1.0, *std::ranges::max_element(usual)));
+  joint_shares(std::max(1.0, *std::ranges::max_element(usual)), health_);
+}
+
+void CoefficientMonitor::joint_shares(double scatter, std::vector<Cause>& shares) const {
+  shares.clear();
+  const double spread = kZ90 * std::sqrt(scatter);
   const Agreement agreement = comparison_.of(health_columns_);
   for (std::size_t i = 0; i < terms_.commands().size(); ++i) {
-    health_.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));
+    shares.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/eigen.hpp"
+#include "core/normal_equations.hpp"
 #include "motion/cause_ranking.hpp"
 #include "motion/coefficient_monitor.hpp"
 #include "motion/standstill.hpp"
@@ -32,6 +33,10 @@ void visit_finding(Archive& archive, Finding& finding) {
   }
 }
 
+Cause unchanged(std::size_t thruster) {
+  return {.kind = CauseKind::thruster, .place = thruster, .size = 1.0, .lower = 1.0, .upper = 1.0};
+}
+
 }  // namespace
 
 class Diagnosis::State {
@@ -43,6 +48,12 @@ class Diagnosis::State {
   const std::vector<Finding>& findings() const { return findings_; }
   std::size_t found() const { return found_; }
   const CoefficientMonitor& monitor() const { return monitor_; }
+  const std::vector<Cause>& present() const { return present_; }
+  std::span<const std::size_t> states() const { return monitor_.terms().velocities(); }
+  std::span<const std::size_t> body_axes() const { return body_axes_; }
+  std::size_t inputs() const { return inputs_; }
+  void accelerations(std::span<const double> x, bool nominal, std::span<double> a) const;
+  void half_widths(std::span<const double> x, std::span<double> widths) const;
   void visit(Archive& archive);
 
  private:
@@ -50,6 +61,9 @@ class Diagnosis::State {
   bool is_outlier(std::span<const double> y);
   void close_block(double t);
   void start_finding(double t);
+  void stop_looking();
+  void estimate_present(const Finding& finding, double scatter);
+  std::span<const double> theta_now() const;
   void inspect(double t);
   void report(Finding& finding, const CauseRanking& ranking, double t) const;
   Agreement alone(std::size_t explanation);
@@ -71,11 +85,17 @@ class Diagnosis::State {
   std::vector<Agreement> alone_;  // of every explanation
   std::vector<Finding> findings_;
   std::size_t found_ = 0;
+  std::size_t inputs_;
+  std::vector<std::size_t> body_axes_;
+  std::vector<Cause> present_;   // share of each thruster against the reference
+  std::vector<double> nominal_;  // coefficients before the first settled change; empty: none
+  ReferenceFit accepted_;        // coefficients of the reference since the last settled change
+  std::size_t accepted_at_ = 0;  // number of fits then; 0: no settled change
 };
 
 Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& states,
                         std::vector<std::size_t> body_axes, const Attitude& attitude)
-    : monitor_(inputs, states, std::move(body_axes), attitude),
+    : monitor_(inputs, states, body_axes, attitude),
       standstill_(states),
       block_(monitor_.terms().size(), states.size()),
       after_(block_),
@@ -83,8 +103,15 @@ Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& stat
       residual_(states.size()),
       delta_(phi_.size() * states.size()),
       tangent_(delta_.size()),
-      alone_(monitor_.explanations().list().size()) {
+      alone_(monitor_.explanations().list().size()),
+      inputs_(inputs),
+      body_axes_(std::move(body_axes)),
+      accepted_(monitor_.terms().size(), states.size()) {
   findings_.reserve(kMostFindings);
+  nominal_.reserve(delta_.size());
+  for (const std::size_t command : monitor_.terms().commands()) {
+    present_.push_back(unchanged(command));
+  }
 }
 
 void Diagnosis::State::update(std::span<const double> x, std::span<const double> y, double t) {
@@ -156,7 +183,7 @@ void Diagnosis::State::report_frozen(double t) {
   finding.count = 1;
   finding.explained = 1.0;
   finding.causes[0] = {CauseKind::frozen, standstill_.input(which), value, value, value};
-  looking_ = false;
+  stop_looking();
   block_.clear();
   guard_ = kDiagnosis.guard_blocks;
 }
@@ -203,6 +230,7 @@ void Diagnosis::State::inspect(double t) {
                   monitor_.usual_scatter(), delta_.size());
   if (inspected_ >= kDiagnosis.first_blocks) {
     report(findings_.back(), ranking, t);
+    estimate_present(findings_.back(), std::max(ranking.dispersion, monitor_.usual_scatter()));
   }
   const bool chance =
       ranking.state == FindingState::looking && inspected_ >= kDiagnosis.chance_blocks;
@@ -262,7 +290,7 @@ void Diagnosis::State::report(Finding& finding, const CauseRanking& ranking, dou
 // changed. Where that isn't known, most of it goes. A finding of which nothing is left after all
 // its rows was chance, and is taken back.
 void Diagnosis::State::finish(const CauseRanking& ranking) {
-  looking_ = false;
+  stop_looking();
   if (ranking.state == FindingState::looking) {
     findings_.pop_back();
     --found_;
@@ -270,11 +298,92 @@ void Diagnosis::State::finish(const CauseRanking& ranking) {
     return;
   }
   findings_.back().settled = true;
+  if (nominal_.empty()) {
+    nominal_.assign(monitor_.fit().theta().begin(), monitor_.fit().theta().end());
+  }
   if (ranking.state == FindingState::named) {
     set_delta(ranking.best);
     monitor_.accept_change(delta_, kDiagnosis.kept_named, after_);
   } else {
     monitor_.accept_change({}, kDiagnosis.kept_unnamed, after_);
+  }
+  monitor_.fit_reference(accepted_);
+  accepted_at_ = monitor_.watched();
+}
+
+void Diagnosis::State::stop_looking() {
+  looking_ = false;
+  for (Cause& thruster : present_) {
+    thruster = unchanged(thruster.place);
+  }
+}
+
+// Of a named change its thrusters; of any other all thrusters, whatever the cause is.
+void Diagnosis::State::estimate_present(const Finding& finding, double scatter) {
+  if (finding.state != FindingState::named) {
+    monitor_.joint_shares(scatter, present_);
+    return;
+  }
+  for (Cause& thruster : present_) {
+    thruster = unchanged(thruster.place);
+    for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
+      if (cause.kind == CauseKind::thruster && cause.place == thruster.place) {
+        thruster = cause;
+      }
+    }
+  }
+}
+
+// Until the next fit, a settled change is in the reference alone.
+std::span<const double> Diagnosis::State::theta_now() const {
+  return accepted_at_ == monitor_.watched() ? accepted_.theta() : monitor_.fit().theta();
+}
+
+// θᵀ(φ(x) − φ(0)).
+void Diagnosis::State::accelerations(std::span<const double> x, bool nominal,
+                                     std::span<double> a) const {
+  const MotionTerms& terms = monitor_.terms();
+  Eigen::VectorXd phi(static_cast<Eigen::Index>(terms.size()));
+  Eigen::VectorXd rest(phi.size());
+  const std::vector<double> zeros(x.size());
+  terms.evaluate(x, {phi.data(), terms.size()});
+  terms.evaluate(zeros, {rest.data(), terms.size()});
+  phi -= rest;
+  for (std::size_t k = 0; !nominal && k < terms.size(); ++k) {
+    for (const Cause& thruster : present_) {
+      phi(static_cast<Eigen::Index>(k)) *=
+          terms[k].depends_on(thruster.place) ? thruster.size : 1.0;
+    }
+  }
+  const bool before = nominal && !nominal_.empty();
+  const auto theta = columns_of(before    ? std::span<const double>(nominal_)
+                                : nominal ? monitor_.fit().theta()
+                                          : theta_now(),
+                                terms.size());
+  as_vector(a) = theta.transpose() * phi;
+}
+
+// Of 90 % intervals, by the rows of the reference and by the present shares.
+void Diagnosis::State::half_widths(std::span<const double> x, std::span<double> widths) const {
+  const MotionTerms& terms = monitor_.terms();
+  Eigen::VectorXd phi(static_cast<Eigen::Index>(terms.size()));
+  Eigen::VectorXd rest(phi.size());
+  const std::vector<double> zeros(x.size());
+  terms.evaluate(x, {phi.data(), terms.size()});
+  terms.evaluate(zeros, {rest.data(), terms.size()});
+  phi -= rest;
+  const Eigen::MatrixXd inverse = equilibrated_inverse(monitor_.reference().gram());
+  const double scatter = phi.dot(inverse * phi) * monitor_.usual_scatter();
+  const Eigen::MatrixXd noise = columns_of(monitor_.fit().precision(), widths.size()).inverse();
+  const auto theta = columns_of(theta_now(), terms.size());
+  double share_width = 0.0;
+  for (const Cause& thruster : present_) {
+    share_width += x[thruster.place] != 0.0 ? 0.5 * (thruster.upper - thruster.lower) : 0.0;
+  }
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const double own = kZ90 * std::sqrt(std::max(noise(axis, axis) * scatter, 0.0));
+    widths[i] = std::hypot(own, share_width * theta.col(axis).dot(phi));
   }
 }
 
@@ -314,6 +423,12 @@ void Diagnosis::State::visit(Archive& archive) {
   archive.whole(found_);
   archive.list(findings_, kMostFindings,
                [&](Finding& finding) { visit_finding(archive, finding); });
+  for (Cause& thruster : present_) {
+    visit_cause(archive, thruster);
+  }
+  archive.list(nominal_, delta_.size(), [&](double& number) { archive.number(number); });
+  archive.part("accepted", accepted_);
+  archive.whole(accepted_at_);
   archive.require(!looking_ || !findings_.empty(), "a change looked into that isn't there");
 }
 
@@ -352,6 +467,40 @@ const std::vector<Cause>& Diagnosis::health() const {
 
 bool Diagnosis::ready() const {
   return state_->monitor().ready();
+}
+
+void Diagnosis::thrust(std::size_t input, double command, bool nominal,
+                       std::span<double> acceleration, std::span<double> half_width) const {
+  std::vector<double> x(state_->inputs());
+  x[input] = command;
+  state_->accelerations(x, nominal, acceleration);
+  if (!half_width.empty()) {
+    state_->half_widths(x, half_width);
+  }
+}
+
+void Diagnosis::accelerations(std::span<const double> x, std::span<double> acceleration) const {
+  state_->accelerations(x, false, acceleration);
+}
+
+bool Diagnosis::knows_thrust() const {
+  return state_->monitor().watched() > 0;
+}
+
+std::size_t Diagnosis::inputs() const {
+  return state_->inputs();
+}
+
+std::span<const std::size_t> Diagnosis::states() const {
+  return state_->states();
+}
+
+std::span<const std::size_t> Diagnosis::body_axes() const {
+  return state_->body_axes();
+}
+
+const std::vector<Cause>& Diagnosis::present() const {
+  return state_->present();
 }
 
 void Diagnosis::visit(Archive& archive) {

@@ -53,6 +53,16 @@ inline constexpr struct DiagnosisTuning {
   std::size_t frozen_factor = 4;  ///< [times the longest run so far]
 } kDiagnosis;
 
+/// Of Authority; chosen by hand.
+inline constexpr struct AuthorityTuning {
+  double ridge = 1e-6;           ///< ρ: prefers little thrust where many commands do
+  double reached = 2e-3;         ///< of the nominal range: a wanted acceleration counts as reached
+  double near_singular = 0.1;    ///< of the nominal least singular value
+  double dead = 0.03;            ///< share of thrust, below which a thruster gets no command
+  double fastest_current = 5.0;  ///< m/s, end of the search
+  int bisections = 40;           ///< to rounding of a millionth of a millionth
+} kAuthority;
+
 /// Chosen by hand, without a recorded measurement, unless a line says otherwise.
 inline constexpr struct IdentificationTuning {
   // Weak form (docs/identify.md, "How").

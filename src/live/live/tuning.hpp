@@ -32,6 +32,14 @@ inline constexpr struct Tuning {
   double checked_rate_hz = 50.0;         ///< rows beyond tell a check no more
   std::size_t least_checked_rows = 121;  ///< at low rates: 24 windows of 5 rows
 
+  // Dead reckoning (docs/dead_reckoning.md#live)
+  double between_models_s = 10.0;       ///< by the rows' clock
+  double between_first_models_s = 2.0;  ///< until there is a model
+  double model_delay_s = 2.0;   ///< from a row until the model before that row serves: so live and
+                                ///< replayed runs change models at the same messages
+  double least_step_s = 0.02;   ///< between two estimates without a measurement
+  double least_outage_s = 1.0;  ///< s of silence; shorter silences are usual
+
   // Reports
   double least_pause_s = 0.1;    ///< between two checkpoints or reports of status; docs/limits.md
   double longest_pause_s = 1e6;  ///< 12 days

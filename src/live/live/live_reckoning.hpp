@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kelpie/model/alignment.hpp"
+#include "kelpie/navigation/dead_reckoning.hpp"
+#include "live/configuration.hpp"
+#include "live/health.hpp"
+#include "live/output.hpp"
+#include "live/present_commands.hpp"
+#include "live/receiver.hpp"
+
+namespace kelpie::live {
+
+/// A model for dead reckoning, as of a row.
+struct ReckoningModel {
+  OpenLoop loop;
+  std::shared_ptr<const Alignment> alignment;  ///< of the model's commands
+};
+
+/// The equations of motion of a model; null before there are any.
+std::shared_ptr<const ReckoningModel> reckoning_model(const DynamicsModel& model,
+                                                      const Alignment& alignment);
+
+/// Velocities at every message, through outages of the velocity log: a DeadReckoning between the
+/// receiver and the learner (docs/dead_reckoning.md#live). Models come from the learner as of
+/// certain rows and serve a fixed time later, so that a replay gives the numbers of the live run.
+/// For the receiving thread.
+class LiveReckoning {
+ public:
+  explicit LiveReckoning(const Configuration& configuration);
+
+  /// Whether the model before the whole row at `t` [s] is wanted from the learner.
+  bool wants_model(double t);
+
+  /// Whether the wanted model has to serve at the time `now_s` [s].
+  bool is_due(double now_s) const { return waits_ && now_s >= due_s_; }
+
+  /// Serves with the wanted model; null: there is none yet. Allocates.
+  void use(std::shared_ptr<const ReckoningModel> model);
+
+  /// Takes the newest message in. The new estimate, valid until the next call; empty without one.
+  /// Begins and ends of outages are events of `output`.
+  std::optional<ReckonedSample> update(const Receiver& receiver, std::int64_t received_ns,
+                                       Output& output);
+
+  /// Whether the row at `t` [s] uses velocities that the velocity log didn't measure: exact zeros
+  /// or frozen values. Valid after the row was made.
+  bool is_invalid(double t) const;
+
+  ReckoningHealth health() const;
+
+ private:
+  bool take_velocities(const Receiver& receiver);
+  void begin_anew(const Receiver& receiver);
+  void note_faults();
+  void note_outage(Output& output);
+
+  const Configuration& configuration_;
+  std::vector<std::size_t> states_;  // places of the velocities; empty: unknown, or too many
+  std::vector<std::string> names_;
+  DeadReckoningSettings settings_;
+  std::vector<std::size_t> heard_;  // samples of each velocity, so far
+  PresentCommands commands_;
+  std::shared_ptr<const ReckoningModel> model_;
+  std::unique_ptr<DeadReckoning> reckoning_;
+  std::vector<double> x_;
+  double t_ = -std::numeric_limits<double>::infinity();  // of the last estimate
+  double asked_s_ = t_;                                  // row of the last wanted model
+  double due_s_ = 0.0;
+  bool waits_ = false;  // for a wanted model
+  std::size_t restarts_ = 0;
+  VelocityFault fault_ = VelocityFault::none;  // of the velocity log
+  double invalid_from_s_ = std::numeric_limits<double>::infinity();
+  double invalid_until_s_ = -std::numeric_limits<double>::infinity();
+  bool is_out_ = false;  // an outage was reported
+  double silent_s_ = 0.0;
+  ReckoningHealth health_;
+};
+
+}  // namespace kelpie::live
