@@ -57,6 +57,20 @@ void read_rates(const file::TomlNode& value, std::map<std::string, double>& rate
   }
 }
 
+VelocityMessage velocity_message_of(const file::TomlNode& value) {
+  const std::string text = value.text();
+  if (text == "ODOMETRY") {
+    return VelocityMessage::odometry;
+  }
+  if (text == "VISION_POSITION_DELTA") {
+    return VelocityMessage::delta;
+  }
+  if (text != "none") {
+    value.refuse("'" + text + R"(' has to be "ODOMETRY", "VISION_POSITION_DELTA" or "none")");
+  }
+  return VelocityMessage::none;
+}
+
 }  // namespace
 
 Connection parse_connection(const std::string& text) {
@@ -96,7 +110,8 @@ Connection parse_connection(const std::string& text) {
 }
 
 LinkSettings read_link_settings(const file::TomlNode& table) {
-  table.table({"connection", "system", "component", "key", "system_id", "component_id", "rates"});
+  table.table({"connection", "system", "component", "key", "system_id", "component_id", "rates",
+               "velocity", "frame"});
   LinkSettings settings;
   if (table.has("connection")) {
     settings.text = table["connection"].text();
@@ -123,6 +138,16 @@ LinkSettings read_link_settings(const file::TomlNode& table) {
     } catch (const InputError& error) {
       key.refuse(error.what());
     }
+  }
+  if (table.has("velocity")) {
+    settings.velocity = velocity_message_of(table["velocity"]);
+  }
+  if (table.has("frame")) {
+    const std::string frame = table["frame"].text();
+    if (frame != "FRD" && frame != "FLU") {
+      table["frame"].refuse("'" + frame + R"(' has to be "FRD" or "FLU")");
+    }
+    settings.is_frd = frame == "FRD";
   }
   if (table.has("rates")) {
     read_rates(table["rates"], settings.rates);

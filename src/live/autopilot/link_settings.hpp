@@ -32,6 +32,13 @@ struct Connection {
 /// "serial:/dev/ttyACM0:115200". Throws InputError on other texts and unknown baud rates.
 Connection parse_connection(const std::string& text);
 
+/// How velocities are told to the autopilot.
+enum class VelocityMessage : std::uint8_t {
+  none,
+  odometry,  ///< ODOMETRY
+  delta,     ///< VISION_POSITION_DELTA, ArduSub's door for a velocity log
+};
+
 /// The table [live.mavlink] of a configuration file (docs/live.md).
 struct LinkSettings {
   static constexpr std::uint8_t kOnboardComputer = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
@@ -44,6 +51,8 @@ struct LinkSettings {
   std::uint8_t system_id = 0;       ///< own; 0: the vehicle's
   std::uint8_t component_id = kOnboardComputer;  ///< own
   std::map<std::string, double> rates{};         ///< requested rates of messages [Hz]
+  VelocityMessage velocity = VelocityMessage::none;
+  bool is_frd = true;  ///< the log's velocities are forward, right, down; else forward, left, up
 
   bool operator==(const LinkSettings&) const = default;
 };

@@ -114,7 +114,7 @@ LinkTransport::LinkTransport(const live::Configuration& configuration, const Lin
       senders_({.system = settings.system, .component = settings.component},
                named_senders(configuration)),
       rates_(wanted_),
-      reporter_(configuration.plan.targets),
+      reporter_(configuration.plan.targets, settings.velocity, settings.is_frd),
       writer_(writer_of(1)) {
   check_fields(configuration);
 }

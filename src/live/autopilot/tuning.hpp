@@ -35,10 +35,12 @@ inline constexpr struct Tuning {
   double enough = 0.8;  ///< of the requested rate: schedulers round; docs/live.md
 
   // Reports
-  std::chrono::milliseconds between_values{200};  ///< docs/live.md
-  std::chrono::seconds between_texts{1};          ///< docs/live.md
-  std::size_t most_texts = 8;                     ///< waiting; further ones are dropped
-  std::size_t pieces = 4;                         ///< of a text; the rest is cut
+  std::chrono::milliseconds between_values{200};     ///< docs/live.md
+  std::chrono::milliseconds between_velocities{50};  ///< ArduSub takes a velocity log at 20 Hz
+  double longest_delta_s = 1.0;                      ///< s; ArduPilot drops older ways
+  std::chrono::seconds between_texts{1};             ///< docs/live.md
+  std::size_t most_texts = 8;                        ///< waiting; further ones are dropped
+  std::size_t pieces = 4;                            ///< of a text; the rest is cut
 } kTuning;
 
 }  // namespace kelpie::autopilot

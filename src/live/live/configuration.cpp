@@ -77,9 +77,22 @@ void endpoint(const file::TomlNode& value, std::string& text) {
   }
 }
 
+// {"/dvl:velocity_valid" = 1}: the least value of a valid message.
+void read_validity(const file::TomlNode& table, std::map<std::string, double>& valid) {
+  for (const file::TomlNode& value :
+       table.members("a table of fields, as in {\"/dvl:velocity_valid\" = 1}")) {
+    try {
+      bag::parse_column(value.key());
+    } catch (const InputError& error) {
+      value.refuse(error.what());
+    }
+    valid[value.key()] = value.number("the least value of a valid message, a number");
+  }
+}
+
 LiveSettings read_live(const file::TomlNode& live) {
   live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "page", "token",
-              "status", "dds", "mavlink"});
+              "status", "dds", "mavlink", "valid"});
   LiveSettings settings;
   const auto text = [&](const char* key, std::string& value) {
     if (live.has(key)) {
@@ -112,6 +125,9 @@ LiveSettings read_live(const file::TomlNode& live) {
     if (live.has(key)) {
       endpoint(live[key], settings.*value);
     }
+  }
+  if (live.has("valid")) {
+    read_validity(live["valid"], settings.valid);
   }
   text("token", settings.token);
   if (live.has("token") && !is_good_token(settings.token)) {
@@ -241,6 +257,9 @@ Fields Configuration::identity() const {
   for (const auto& [column, unit] : rows ? rows->units : std::map<std::string, Unit>{}) {
     fields.emplace_back("log.units." + column, unit.text());
   }
+  for (const auto& [column, least] : live.valid) {
+    fields.emplace_back("live.valid." + column, number_text(least));
+  }
   return fields;
 }
 
@@ -249,6 +268,11 @@ std::vector<std::string> Configuration::columns() const {
   for (const StreamPlan::Source& source : plan.sources) {
     if (std::ranges::find(columns, source.from) == columns.end()) {
       columns.push_back(source.from);
+    }
+  }
+  for (const auto& [column, least] : live.valid) {
+    if (std::ranges::find(columns, column) == columns.end()) {
+      columns.push_back(column);
     }
   }
   return columns;

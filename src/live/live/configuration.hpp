@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,16 +35,18 @@ enum class Frozen : std::uint8_t { skip, learn };
 
 /// The table [live] of a configuration file (docs/live.md).
 struct LiveSettings {
-  std::string out = "out/live";         ///< folder of checkpoint and model
-  double checkpoint_s = 10.0;           ///< between two checkpoints [s]; a crash loses at most this
-  std::string align = "auto";           ///< alignment: auto, none, or a lag [s]
-  Frozen frozen = Frozen::skip;         ///< treatment of stuck velocities
-  std::string record{};                 ///< folder for recordings (MCAP); empty: none
-  std::string plotjuggler{};            ///< parse_endpoint; empty: none
-  std::string page{};                   ///< parse_endpoint, to listen on; empty: no page
-  std::string token{};                  ///< access token of the page; empty: not given
-  double status_s = 60.0;               ///< between two status lines [s]
-  std::optional<file::TomlNode> dds{};  ///< [live.dds], read by the room `ros`
+  std::string out = "out/live";  ///< folder of checkpoint and model
+  double checkpoint_s = 10.0;    ///< between two checkpoints [s]; a crash loses at most this
+  std::string align = "auto";    ///< alignment: auto, none, or a lag [s]
+  Frozen frozen = Frozen::skip;  ///< treatment of stuck velocities
+  std::string record{};          ///< folder for recordings (MCAP); empty: none
+  std::string plotjuggler{};     ///< parse_endpoint; empty: none
+  std::string page{};            ///< parse_endpoint, to listen on; empty: no page
+  std::string token{};           ///< access token of the page; empty: not given
+  double status_s = 60.0;        ///< between two status lines [s]
+  /// Columns that tell whether their topic's velocities are valid: at this value and above.
+  std::map<std::string, double> valid{};
+  std::optional<file::TomlNode> dds{};      ///< [live.dds], read by the room `ros`
   std::optional<file::TomlNode> mavlink{};  ///< [live.mavlink], read by `autopilot`
 };
 
@@ -62,7 +65,8 @@ struct Configuration {
   /// Everything besides the settings that a checkpoint must match to be resumed. Keys as in the
   /// file ("log.rate").
   Fields identity() const;
-  std::vector<std::string> columns() const;  ///< Topics and fields of the sources, without repeats.
+  /// Topics and fields of the sources and of LiveSettings::valid, without repeats.
+  std::vector<std::string> columns() const;
 };
 
 /// Reads a file; `set` (key=value) overrides settings. Throws InputError (file, line, key) as

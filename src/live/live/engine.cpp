@@ -47,6 +47,7 @@ Engine::Engine(const Configuration& configuration, std::filesystem::path folder,
       row_(empty_row(configuration.plan)),
       queue_(kTuning.queued_rows, row_),
       commands_(configuration.plan.inputs, configuration.plan.rate_hz, configuration.plan.gap_s),
+      reckoning_(configuration),
       x_now_(configuration.plan.inputs.size()),
       predictions_(configuration.plan.targets.size()) {}
 
@@ -96,6 +97,7 @@ void Engine::learn() {
     failed_ = std::current_exception();
     queue_.close();
   }
+  learning_ended_ = true;
 }
 
 void Engine::receive(const std::function<Action()>& next_action) {
@@ -110,10 +112,11 @@ void Engine::receive(const std::function<Action()>& next_action) {
         recorder_->write(transport_.topics(), message);
       }
       receiver_.receive(transport_.topics(), message);
-      forward_rows();
       if (outputs_.wants_predictions()) {
         predict();
       }
+      reckon();
+      forward_rows();
     } else if (got == Transport::Got::end) {
       has_ended_ = true;
       finish_rows();
@@ -164,10 +167,28 @@ void Engine::forward_rows() {
     row_.origin_ns = receiver_.origin_ns(row->t);
     std::ranges::copy(row->x, row_.x.begin());
     std::ranges::copy(row->y, row_.y.begin());
-    row_.is_stuck = configuration_.live.frozen == Frozen::skip && receiver_.is_stuck(row->t);
+    row_.is_stuck = configuration_.live.frozen == Frozen::skip &&
+                    (receiver_.is_stuck(row->t) || reckoning_.is_invalid(row->t));
+    row_.wants_model = reckoning_.wants_model(row->t);
     row_.received_ns = received_ns_;
     row_.came = Clock::now();
-    queue_.push(row_, reach_.has_value());
+    const bool is_kept = queue_.push(row_, reach_.has_value());
+    models_wanted_ += row_.wants_model && is_kept ? 1 : 0;
+  }
+}
+
+// A replay waits for the learner, so that a model serves from the same message on as it did live.
+void Engine::reckon() {
+  if (reckoning_.is_due(receiver_.now_s())) {
+    while (reach_ && learner_.models_given() < models_wanted_ && !learning_ended_) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (learner_.models_given() >= models_wanted_) {
+      reckoning_.use(learner_.reckoning_model());
+    }
+  }
+  if (const auto sample = reckoning_.update(receiver_, received_ns_, outputs_)) {
+    outputs_.reckoned(*sample);
   }
 }
 
@@ -243,6 +264,7 @@ Health Engine::health() const {
   health.rows_waiting = queue_.size();
   health.record_error = recorder_ ? recorder_->error() : "";
   health.unrecorded = unrecorded_ + (recorder_ ? recorder_->lost() : 0);
+  health.reckoning = reckoning_.health();
   health.learner = learner_.health();
   return health;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <exception>
@@ -16,6 +17,7 @@
 #include "live/configuration.hpp"
 #include "live/health_table.hpp"
 #include "live/live_learner.hpp"
+#include "live/live_reckoning.hpp"
 #include "live/outputs.hpp"
 #include "live/present_commands.hpp"
 #include "live/receiver.hpp"
@@ -60,6 +62,7 @@ class Engine {
   void finish_rows();
   void forward_request();
   void predict();
+  void reckon();
   void report();
   void measure_rates(Health& health) const;
 
@@ -87,6 +90,9 @@ class Engine {
   std::size_t rows_seen_alive_ = 0;
   Clock::time_point alive_ = Clock::now();
   PresentCommands commands_;
+  LiveReckoning reckoning_;
+  std::size_t models_wanted_ = 0;
+  std::atomic<bool> learning_ended_{false};
   std::vector<double> x_now_;
   std::vector<Prediction> predictions_;
   bool has_ended_ = false;

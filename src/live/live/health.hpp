@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "kelpie/learner/regressor.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/stream/signal_history.hpp"
 #include "live/transport.hpp"
 
@@ -48,6 +50,7 @@ struct AxisHealth {
   double r2_last_value = r2;
   double coverage = r2;      ///< share of samples inside the interval
   double disturbance = 0.0;  ///< at the last sample
+  double authority = r2;     ///< share of the nominal range of accelerations that is left
   std::vector<Coefficient> coefficients{};
 };
 
@@ -58,6 +61,29 @@ struct ThrusterHealth {
   double share = 1.0;
   double lower = 1.0;
   double upper = 1.0;
+};
+
+/// Estimate of a velocity, measured or reckoned.
+struct VelocityHealth {
+  std::string name;
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no estimate
+  double deviation = value;                                 ///< standard deviation
+};
+
+/// State of dead reckoning: velocities through outages of the velocity log.
+struct ReckoningHealth {
+  std::vector<VelocityHealth> velocities{};
+  double silent_s = 0.0;      ///< since the velocity log measured a velocity
+  std::string fault{};        ///< why the velocity log isn't used at present; empty: in use
+  std::size_t outages = 0;    ///< outages that have ended
+  double longest_s = 0.0;     ///< the longest of these
+  double largest_step = 0.0;  ///< of a velocity at a measurement, in standard deviations before
+};
+
+/// What the thrusters can do, in units of the effects that `alignment` makes of commands.
+struct Effectiveness {
+  Authority authority;
+  Alignment alignment;
 };
 
 /// State of the learner. `is_paused` is the operator's doing (request `freeze`); a `stuck` velocity
@@ -73,7 +99,10 @@ struct LearnerHealth {
   std::string vehicle{};  ///< the last finding about the vehicle, in words; empty: none
   std::string doubt{};    ///< why the model is doubtful (RowCheck), in words; empty: no reason
   std::vector<ThrusterHealth> thrusters{};
-  double last_t_s = 0.0;        ///< of the last row
+  std::string authority{};  ///< what is left of it, in words; empty: all, or unknown
+  double held_current = std::numeric_limits<double>::quiet_NaN();  ///< Authority::held_current()
+  std::shared_ptr<const Effectiveness> effectiveness{};            ///< null: unknown
+  double last_t_s = 0.0;                                           ///< of the last row
   double checkpoint_t_s = 0.0;  ///< of the last row in the newest checkpoint
   std::size_t checkpoints = 0;
   std::size_t checkpoints_failed = 0;
@@ -96,6 +125,7 @@ struct Health {
   std::size_t rows_waiting = 0;     ///< in the queue
   std::string record_error{};       ///< why nothing is recorded; empty: no error
   std::size_t unrecorded = 0;       ///< messages that aren't in a recording
+  ReckoningHealth reckoning;
   LearnerHealth learner;
 };
 

@@ -53,6 +53,10 @@ constexpr auto of_topic = number_at<TopicHealth, kMember>;
 template <auto kMember>
 constexpr auto of_thruster = number_at<ThrusterHealth, kMember>;
 template <auto kMember>
+constexpr auto reckoning = number_at<Health, &Health::reckoning, kMember>;
+template <auto kMember>
+constexpr auto of_velocity = number_at<VelocityHealth, kMember>;
+template <auto kMember>
 constexpr auto faults = number_at<SourceHealth, &SourceHealth::faults, kMember>;
 
 double is_ready(const Health& health) {
@@ -114,6 +118,20 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
     {"clock_restarts", "clock_restarts_total", "clock set back", "", count, messages,
      "times a clock was set back", run<&Health::clock_restarts>,
      alert(growing, warn, AlertEvent::each, "a clock was set back; samples begin anew")},
+    {"velocity_silent_s", "velocity_silent_seconds", "velocity not measured for/s", "s", gauge,
+     messages, "time since the velocity log measured a velocity; meanwhile velocities are reckoned",
+     reckoning<&ReckoningHealth::silent_s>},
+    {"velocity_fault", "velocity_lost", "no measured velocity", "", text, messages,
+     "why the velocity log isn't used at present",
+     text_at<Health, &Health::reckoning, &ReckoningHealth::fault>, alert(present, warn)},
+    {"velocity_outages", "velocity_outages_total", "outages of velocity", "", count, messages,
+     "outages of the velocity log that have ended", reckoning<&ReckoningHealth::outages>},
+    {"velocity_longest_s", "velocity_longest_outage_seconds", "longest outage/s", "s", gauge,
+     messages, "the longest of the outages that have ended",
+     reckoning<&ReckoningHealth::longest_s>},
+    {"velocity_step", "velocity_largest_step", "largest step of velocity/σ", "", gauge, messages,
+     "largest step of a velocity at a measurement, in standard deviations",
+     reckoning<&ReckoningHealth::largest_step>},
     {"t", "row_time_seconds", "last row/s", "s", gauge, learning,
      "time of the last row since the origin, by the vehicle's clock",
      learner<&LearnerHealth::last_t_s>},
@@ -163,6 +181,12 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
      text_at<Health, &Health::learner, &LearnerHealth::vehicle>, alert(present, warn)},
     {"thrusters_watched", "thrusters_watched", "thrusters watched", "", count, vehicle,
      "thrusters whose share of thrust is known", thrusters_watched},
+    {"authority", "authority_lost", "authority left", "", text, vehicle,
+     "what the thrusters can still do, where that is less than before",
+     text_at<Health, &Health::learner, &LearnerHealth::authority>, alert(present, warn)},
+    {"held_current", "held_current", "holds a current of", "", gauge, vehicle,
+     "fastest water from ahead in which the vehicle holds its place, in the log's unit",
+     learner<&LearnerHealth::held_current>},
     {"checkpoints", "checkpoints_total", "checkpoints", "", count, disk, "checkpoints written",
      learner<&LearnerHealth::checkpoints>},
     {"checkpoints_failed", "checkpoints_failed_total", "checkpoints failed", "", count, disk,
@@ -197,6 +221,9 @@ constexpr std::array kAxis = std::to_array<HealthField<AxisHealth>>({
      "share of the last samples inside their interval", of_axis<&AxisHealth::coverage>},
     {"disturbance", "axis_disturbance", "disturbance", "", gauge, axis,
      "what the present disturbance adds, in the target's unit", of_axis<&AxisHealth::disturbance>},
+    {"authority", "axis_authority", "authority left", "", share, axis,
+     "share of the nominal range of accelerations that the thrusters can give",
+     of_axis<&AxisHealth::authority>},
     {"judged", "axis_scored_samples", "samples scored", "", count, axis,
      "samples behind R2 and coverage", of_axis<&AxisHealth::judged>},
     {"ready", "axis_ready", "", "", flag, axis, "a model is in service",
@@ -273,6 +300,13 @@ constexpr std::array kThruster = std::to_array<HealthField<ThrusterHealth>>({
      of_thruster<&ThrusterHealth::upper>, alert(never), series("bound", "upper")},
 });
 
+constexpr std::array kVelocity = std::to_array<HealthField<VelocityHealth>>({
+    {"value", "velocity_estimate", "velocity", "", gauge, messages,
+     "velocity, measured or reckoned, in the log's unit", of_velocity<&VelocityHealth::value>},
+    {"deviation", "velocity_standard_deviation", "standard deviation", "", gauge, messages,
+     "standard deviation of the velocity", of_velocity<&VelocityHealth::deviation>},
+});
+
 }  // namespace tables
 
 }  // namespace
@@ -296,6 +330,10 @@ std::span<const HealthField<TopicHealth>> health_fields() {
 template <>
 std::span<const HealthField<ThrusterHealth>> health_fields() {
   return tables::kThruster;
+}
+template <>
+std::span<const HealthField<VelocityHealth>> health_fields() {
+  return tables::kVelocity;
 }
 
 namespace {

@@ -94,7 +94,8 @@ struct HealthField {
   double metric_value(const Of& of) const { return unit == "ms" ? value(of) / 1e3 : value(of); }
 };
 
-/// Fields of `Of`: Health (the whole run), AxisHealth, SourceHealth, TopicHealth, ThrusterHealth.
+/// Fields of `Of`: Health (the whole run), AxisHealth, SourceHealth, TopicHealth, ThrusterHealth,
+/// VelocityHealth.
 template <typename Of>
 std::span<const HealthField<Of>> health_fields();
 template <>
@@ -107,14 +108,18 @@ template <>
 std::span<const HealthField<TopicHealth>> health_fields();
 template <>
 std::span<const HealthField<ThrusterHealth>> health_fields();
+template <>
+std::span<const HealthField<VelocityHealth>> health_fields();
 
-/// Calls `visit(list, name)` for each list of a health: axes, signals, topics, thrusters.
+/// Calls `visit(list, name)` for each list of a health: axes, signals, topics, thrusters,
+/// velocities.
 template <typename Visit>
 void visit_health_lists(const Health& health, Visit visit) {
   visit(health.learner.axes, "axis");
   visit(health.sources, "signal");
   visit(health.topics, "topic");
   visit(health.learner.thrusters, "thruster");
+  visit(health.reckoning.velocities, "velocity");
 }
 
 /// Something that is wrong now.

@@ -34,6 +34,7 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       progress_(saved ? saved->progress : Progress{}),
       check_(configuration.plan, configuration.settings.shared.states),
       changes_(configuration.plan, model_->model().ready()),
+      authority_(configuration.plan),
       score_(configuration.plan),
       predictions_(configuration.plan.targets.size()),
       decisions_(configuration.plan.targets.size()),
@@ -65,6 +66,9 @@ void LiveLearner::process(const Row& row) {
   if (row.request) {
     execute(*row.request);
     return;
+  }
+  if (row.wants_model) {
+    give_model();
   }
   ++progress_.rows;
   if (row.origin_ns != progress_.origin_ns) {
@@ -170,6 +174,7 @@ void LiveLearner::begin_anew() {
   progress_.clock = {};
   progress_.learned = 0;
   changes_ = ChangeReporter(configuration_.plan, false);
+  authority_ = AuthorityReporter(configuration_.plan);
   score_ = PredictionScore(configuration_.plan);
 }
 
@@ -203,6 +208,7 @@ std::span<const Decision> LiveLearner::predict(const SharedModel& model,
 void LiveLearner::update(std::span<const double> x, std::span<const double> y, double t) {
   SharedModel& shared = *model_;
   shared.update(x, y, progress_.clock.at(t));
+  authority_.observe(x);
   ++progress_.learned;
   score_.score(x, y, t, shared.model().decisions());
 }
@@ -286,6 +292,20 @@ void LiveLearner::publish_alignment() {
   published_.swap(next);
 }
 
+void LiveLearner::give_model() {
+  auto next = live::reckoning_model(model_->model(), alignment_.alignment());
+  {
+    const std::lock_guard lock(mutex_);
+    reckoning_model_.swap(next);
+  }
+  models_given_.fetch_add(1);
+}
+
+std::shared_ptr<const ReckoningModel> LiveLearner::reckoning_model() const {
+  const std::lock_guard lock(mutex_);
+  return reckoning_model_;
+}
+
 std::shared_ptr<const Alignment> LiveLearner::alignment() const {
   const std::lock_guard lock(mutex_);
   return published_;
@@ -314,6 +334,7 @@ void LiveLearner::refresh_health() {
   now.vehicle = changes_.vehicle();
   now.doubt = progress_.doubt;
   now.last_t_s = last_t_s_;
+  authority_.update(model_->model().diagnosis(), now.alignment, last_t_s_, now, output_);
   refreshed_ = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);
   health_ = std::move(now);

@@ -14,10 +14,12 @@
 
 #include "kelpie/model/live_alignment.hpp"
 #include "kelpie/model/shared_model.hpp"
+#include "live/authority_reporter.hpp"
 #include "live/change_reporter.hpp"
 #include "live/checkpoint.hpp"
 #include "live/configuration.hpp"
 #include "live/health.hpp"
+#include "live/live_reckoning.hpp"
 #include "live/output.hpp"
 #include "live/prediction_score.hpp"
 #include "live/row_check.hpp"
@@ -55,6 +57,10 @@ class LiveLearner {
   LearnerHealth health() const;
   /// The learning model, to predict with. A reset or another alignment replaces the model.
   std::shared_ptr<const SharedModel> model() const;
+  /// The model that the last row with `wants_model` asked for; null: none was ready.
+  std::shared_ptr<const ReckoningModel> reckoning_model() const;
+  /// Number of such rows so far.
+  std::size_t models_given() const { return models_given_; }
   /// The alignment in use; another one is another object.
   std::shared_ptr<const Alignment> alignment() const;
   void set_checkpoint_s(double seconds) { checkpoint_s_ = seconds; }
@@ -76,6 +82,7 @@ class LiveLearner {
   std::span<const Decision> predict(const SharedModel& model, std::span<const double> x);
   void update(std::span<const double> x, std::span<const double> y, double t);
   void publish_alignment();
+  void give_model();
 
   const Configuration& configuration_;
   std::filesystem::path folder_;
@@ -90,6 +97,7 @@ class LiveLearner {
   bool is_stuck_ = false;
   RowCheck check_;
   ChangeReporter changes_;
+  AuthorityReporter authority_;
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;
   double last_t_s_ = 0.0;
@@ -98,10 +106,12 @@ class LiveLearner {
   std::vector<Decision> decisions_;      // the same, as decisions
   std::atomic<double> checkpoint_s_;
   std::atomic<std::size_t> rows_taken_{0};
+  std::atomic<std::size_t> models_given_{0};
   std::chrono::steady_clock::time_point refreshed_;
   mutable std::mutex mutex_;  // guards the members below
   LearnerHealth health_;
   std::shared_ptr<const Alignment> published_;
+  std::shared_ptr<const ReckoningModel> reckoning_model_;
 };
 
 }  // namespace kelpie::live

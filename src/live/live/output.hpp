@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/navigation/dead_reckoning.hpp"
 #include "live/health.hpp"
 
 namespace kelpie::live {
@@ -29,6 +31,14 @@ struct PredictedSample {
   std::span<const Prediction> predictions;  ///< per axis
 };
 
+/// Velocities at the newest message, measured or reckoned (kelpie/navigation/dead_reckoning.hpp).
+struct ReckonedSample {
+  std::int64_t stamp_ns = 0;              ///< when the newest message was received
+  std::int64_t data_ns = 0;               ///< its stamp, by the configuration's clock
+  const std::vector<std::string>& names;  ///< of the velocities, in their order
+  const DeadReckoning& reckoning;
+};
+
 /// Receiver of a live run's results. No function may throw or wait for the network.
 class Output {
  public:
@@ -40,6 +50,7 @@ class Output {
   virtual bool wants_predictions() const { return false; }      ///< Whether to call predicted().
   virtual void learned(const LearnedSample& /*sample*/) {}      ///< In the learning thread.
   virtual void predicted(const PredictedSample& /*sample*/) {}  ///< In the receiving thread.
+  virtual void reckoned(const ReckonedSample& /*sample*/) {}    ///< The same.
   virtual void health(const Health& /*health*/) {}    ///< Once a second, in the same thread.
   virtual void event(const std::string& /*line*/) {}  ///< A line of text. In either thread.
   virtual void ended() {}                             ///< The recording has ended; nothing follows.

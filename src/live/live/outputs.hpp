@@ -35,6 +35,7 @@ class Outputs final : public Output {
   }
   void learned(const LearnedSample& sample) override { pass(&Output::learned, sample); }
   void predicted(const PredictedSample& sample) override { pass(&Output::predicted, sample); }
+  void reckoned(const ReckonedSample& sample) override { pass(&Output::reckoned, sample); }
   void health(const Health& health) override { pass(&Output::health, health); }
   void event(const std::string& line) override { pass(&Output::event, line); }
   void ended() override { pass(&Output::ended); }

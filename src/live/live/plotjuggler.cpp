@@ -101,6 +101,22 @@ void PlotJuggler::predicted(const PredictedSample& sample) {
   send(json.dump());
 }
 
+void PlotJuggler::reckoned(const ReckonedSample& sample) {
+  const DeadReckoning& reckoning = sample.reckoning;
+  Json json{{"timestamp", seconds(sample.stamp_ns)}};
+  Json& velocity = json["kelpie"]["velocity"];
+  velocity["silent_s"] = file::number(reckoning.silent_s());
+  velocity["step"] = file::number(reckoning.step());
+  for (std::size_t i = 0; i < sample.names.size(); ++i) {
+    velocity["value"][sample.names[i]] = file::number(reckoning.velocity(i));
+    velocity["deviation"][sample.names[i]] = file::number(reckoning.deviation(i));
+    velocity["fault"][sample.names[i]] = fault_name(reckoning.fault(i));
+  }
+  velocity["current"]["x"] = file::number(reckoning.current()[0]);
+  velocity["current"]["y"] = file::number(reckoning.current()[1]);
+  send(json.dump());
+}
+
 void PlotJuggler::health(const Health& health) {
   Json json{{"timestamp", seconds(health.stamp_ns)}};
   add_fields(json["kelpie"]["health"], health);

@@ -27,6 +27,7 @@ class PlotJuggler final : public Output {
   bool wants_predictions() const override { return true; }
   void learned(const LearnedSample& sample) override;
   void predicted(const PredictedSample& sample) override;
+  void reckoned(const ReckonedSample& sample) override;
   void health(const Health& health) override;
 
  private:

@@ -53,6 +53,10 @@ Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_
     health_.push_back({.name = topic->topic()});
     auto& of_topic = sources_.emplace_back();
     for (const bag::ColumnName& column : topic->columns()) {
+      if (const auto least = configuration.live.valid.find(column.name);
+          least != configuration.live.valid.end()) {
+        validity_.push_back({health_.size() - 1, of_topic.size(), least->second});
+      }
       auto& of_column = of_topic.emplace_back();
       for (std::size_t k = 0; k < plan.sources.size(); ++k) {
         if (plan.sources[k].from == column.name) {
@@ -104,11 +108,22 @@ void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message
     health_[place].last_error = error.what();
     return;
   }
+  const bool is_valid = this->is_valid(place);
   for (std::size_t column = 0; column < sources_[place].size(); ++column) {
     for (const std::size_t source : sources_[place][column]) {
-      add({.source = source, .time_ns = columns.time_ns(), .value = columns.values()[column]});
+      const bool counts = is_valid || std::ranges::find(velocities_, source) == velocities_.end();
+      add({.source = source,
+           .time_ns = columns.time_ns(),
+           .value = counts ? columns.values()[column] : std::numeric_limits<double>::quiet_NaN()});
     }
   }
+}
+
+// By the message's own word: NaN is no validity.
+bool Receiver::is_valid(std::size_t topic) const {
+  return std::ranges::all_of(validity_, [&](const Validity& one) {
+    return one.topic != topic || columns_[topic]->values()[one.column] >= one.least;
+  });
 }
 
 void Receiver::add(const Held& sample) {
@@ -179,9 +194,18 @@ bool Receiver::is_stuck(double t) const {
                              [&](std::size_t source) { return stream_.is_stuck(source, t); });
 }
 
-bool Receiver::newest(std::span<const double> shift_s, std::span<double> x) const {
+const SignalHistory* Receiver::input_signal(std::size_t input) const {
+  return inputs_[input] ? &stream_.signal(*inputs_[input]) : nullptr;
+}
+
+bool Receiver::newest(std::span<const double> shift_s, std::span<double> x,
+                      std::span<const std::size_t> silent) const {
   const StreamPlan& plan = stream_.plan();
   for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::ranges::find(silent, i) != silent.end()) {
+      x[i] = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     const std::optional<std::size_t>& source = inputs_[i];
     if (!source) {
       return false;

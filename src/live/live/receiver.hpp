@@ -42,8 +42,11 @@ class Receiver {
   bool is_stuck(double t) const;
 
   /// The present inputs, each from `shift_s` seconds later (below 0: earlier) as far as known.
-  /// False where an input is silent or derived.
-  bool newest(std::span<const double> shift_s, std::span<double> x) const;
+  /// False where an input is silent or derived; inputs at the places `silent` may be, and are NaN.
+  bool newest(std::span<const double> shift_s, std::span<double> x,
+              std::span<const std::size_t> silent = {}) const;
+  /// The signal of an input; null of a derived input.
+  const SignalHistory* input_signal(std::size_t input) const;
   double now_s() const { return now_s_; }  ///< the newest stamp, since the origin
 
   /// Present origin of times; empty before the first message.
@@ -62,7 +65,15 @@ class Receiver {
     double value = 0.0;
   };
 
+  // A message counts where the value of this column is `least` or above.
+  struct Validity {
+    std::size_t topic = 0;
+    std::size_t column = 0;
+    double least = 0.0;
+  };
+
   void bind(const bag::Topic& topic);
+  bool is_valid(std::size_t topic) const;
   void add(const Held& sample);
   void find_origin();
   void feed(const Held& sample);
@@ -78,6 +89,7 @@ class Receiver {
   std::vector<std::unique_ptr<bag::TopicColumns>> columns_;     // per topic in use
   std::vector<std::vector<std::vector<std::size_t>>> sources_;  // fed by each column
   std::vector<TopicHealth> health_;
+  std::vector<Validity> validity_;     // of topics in use
   std::vector<std::size_t> by_topic_;  // index of a transport's topic -> index here
   std::vector<std::size_t> velocities_;
   std::vector<std::optional<std::size_t>> inputs_;  // source of each

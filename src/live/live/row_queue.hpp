@@ -20,6 +20,7 @@ struct Row {
   std::vector<double> x;
   std::vector<double> y;
   bool is_stuck = false;         ///< a velocity of the row is stuck
+  bool wants_model = false;      ///< the model before the row is wanted for dead reckoning
   std::int64_t received_ns = 0;  ///< of the message that completed the row, by the recorder's clock
   std::chrono::steady_clock::time_point came;  ///< the same by this machine's clock
   std::optional<Request> request{};            ///< if set, all other members are void

@@ -76,11 +76,16 @@ Publisher::Publisher(const dds::Participant& participant, const NodeSettings& se
       widths_per_sigma_(half_width(configuration.settings.shared.coverage)),
       prediction_(participant, settings, "~/prediction",
                   "geometry_msgs/msg/AccelWithCovarianceStamped"),
+      velocity_(participant, settings, "~/velocity",
+                "geometry_msgs/msg/TwistWithCovarianceStamped"),
       axes_(participant, settings, "~/axes", kArray),
       coefficients_(participant, settings, "~/coefficients", kArray),
+      authority_(participant, settings, "~/authority", kArray),
+      allocation_(participant, settings, "~/allocation", kArray),
       diagnostics_(participant, settings, "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
       events_(participant, settings, "~/events", kTextType) {
   prediction_.message.set("header.frame_id", settings.frame);
+  velocity_.message.set("header.frame_id", settings.frame);
 }
 
 void Publisher::predicted(const live::PredictedSample& sample) {
@@ -122,7 +127,37 @@ void Publisher::publish_axes(std::span<const Prediction> predictions) {
   axes_.send();
 }
 
+// Velocities are in the order of the targets, their accelerations.
+void Publisher::reckoned(const live::ReckonedSample& sample) {
+  constexpr std::size_t kAxes = kElements.size();
+  const DeadReckoning& reckoning = sample.reckoning;
+  std::array<double, kAxes * kAxes> covariance{};
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    covariance[axis * (kAxes + 1)] = kUnknown;
+  }
+  bag::MessageBuilder& message = velocity_.message;
+  for (std::size_t i = 0; i < reckoning.states(); ++i) {
+    const std::optional<std::size_t>& row = accelerations_[i];
+    if (!row) {
+      continue;
+    }
+    message.set(fmt::format("twist.twist.{}", kElements[*row]), reckoning.velocity(i));
+    for (std::size_t k = 0; k < reckoning.states(); ++k) {
+      if (const std::optional<std::size_t>& column = accelerations_[k]) {
+        covariance[*row * kAxes + *column] = reckoning.covariance(i, k);
+      }
+    }
+  }
+  set_stamp(message, sample.data_ns);
+  message.set("twist.covariance", covariance);
+  velocity_.send();
+}
+
 void Publisher::health(const live::Health& health) {
+  effectiveness_ = health.learner.effectiveness;
+  if (effectiveness_) {
+    publish_authority(*effectiveness_);
+  }
   publish_coefficients(health);
   publish_diagnostics(health);
   before_ = health;
@@ -144,6 +179,50 @@ void Publisher::publish_coefficients(const live::Health& health) {
     set_table(coefficients_.message, names, kColumns, values_);
     coefficients_.send();
   }
+}
+
+// A row per thruster: its share, then per axis full ahead and full astern with half widths.
+void Publisher::publish_authority(const live::Effectiveness& effectiveness) {
+  std::vector<std::string> rows;
+  std::vector<std::string> columns{"share"};
+  for (const std::string& target : configuration_.plan.targets) {
+    for (const char* const what : {" ahead", " ahead ±", " astern", " astern ±"}) {
+      columns.push_back(target + what);
+    }
+  }
+  values_.clear();
+  for (const ThrusterEffect& one : effectiveness.authority.thrusters()) {
+    rows.push_back(configuration_.plan.inputs[one.range.input]);
+    values_.push_back(one.share);
+    for (std::size_t i = 0; i < one.ahead.size(); ++i) {
+      values_.insert(values_.end(),
+                     {one.ahead[i], one.ahead_width[i], one.astern[i], one.astern_width[i]});
+    }
+  }
+  set_table(authority_.message, rows, columns, values_);
+  authority_.send();
+}
+
+// The effect of a thruster is turned back into its command: dead band, gain astern, neutral point.
+std::string Publisher::allocate(std::span<const double> wanted) {
+  if (!effectiveness_) {
+    return "what the thrusters do isn't known yet";
+  }
+  std::vector<double> of_targets;
+  for (const std::optional<std::size_t>& axis : accelerations_) {
+    of_targets.push_back(axis && std::isfinite(wanted[*axis]) ? wanted[*axis] : 0.0);
+  }
+  const Allocation allocation = effectiveness_->authority.allocate(of_targets);
+  std::vector<std::string> names;
+  values_.clear();
+  for (std::size_t k = 0; k < allocation.commands.size(); ++k) {
+    names.push_back(
+        configuration_.plan.inputs[effectiveness_->authority.thrusters()[k].range.input]);
+    values_.push_back(effectiveness_->alignment.command_for(names.back(), allocation.commands[k]));
+  }
+  set_table(allocation_.message, std::vector<std::string>{"command"}, names, values_);
+  allocation_.send();
+  return {};
 }
 
 void Publisher::publish_diagnostics(const live::Health& health) {
@@ -176,8 +255,8 @@ void Publisher::event(const std::string& line) {
 
 std::vector<std::string> Publisher::mismatches() const {
   std::vector<std::string> all;
-  for (const TopicWriter* const topic :
-       {&prediction_, &axes_, &coefficients_, &diagnostics_, &events_}) {
+  for (const TopicWriter* const topic : {&prediction_, &velocity_, &authority_, &allocation_,
+                                         &axes_, &coefficients_, &diagnostics_, &events_}) {
     std::ranges::move(topic->publication.mismatches(), std::back_inserter(all));
   }
   return all;

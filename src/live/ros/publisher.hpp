@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,8 +38,13 @@ class Publisher final : public live::Output {
 
   bool wants_predictions() const override { return true; }
   void predicted(const live::PredictedSample& sample) override;
+  void reckoned(const live::ReckonedSample& sample) override;
   void health(const live::Health& health) override;
   void event(const std::string& line) override;
+
+  /// Publishes commands for wanted accelerations, in the order of the axes of a twist; NaN: of no
+  /// interest. Returns why not; empty: published.
+  std::string allocate(std::span<const double> wanted);
 
   std::vector<std::string> mismatches() const;  ///< Of all topics, as Subscription::mismatches.
 
@@ -46,6 +52,7 @@ class Publisher final : public live::Output {
   void publish_acceleration(const live::PredictedSample& sample);
   void publish_axes(std::span<const Prediction> predictions);
   void publish_coefficients(const live::Health& health);
+  void publish_authority(const live::Effectiveness& effectiveness);
   void publish_diagnostics(const live::Health& health);
 
   const live::Configuration& configuration_;
@@ -53,12 +60,16 @@ class Publisher final : public live::Output {
   std::vector<std::optional<std::size_t>> accelerations_;  // axis of each target
   double widths_per_sigma_;                                // of half an interval
   TopicWriter prediction_;
+  TopicWriter velocity_;
   TopicWriter axes_;
   TopicWriter coefficients_;
+  TopicWriter authority_;
+  TopicWriter allocation_;
   TopicWriter diagnostics_;
   TopicWriter events_;
   std::vector<double> values_;
   live::Health before_;
+  std::shared_ptr<const live::Effectiveness> effectiveness_;
 };
 
 }  // namespace kelpie::ros

@@ -20,6 +20,8 @@ namespace kelpie::ros {
 namespace {
 
 constexpr std::size_t kCommand = static_cast<std::size_t>(-1);  // in place of a topic's index
+constexpr std::size_t kWanted = static_cast<std::size_t>(-2);   // the same
+constexpr const char* kWantedType = "geometry_msgs/msg/AccelStamped";
 
 std::int64_t time_or(std::int64_t time_ns, std::int64_t otherwise) {
   return time_ns > 0 && time_ns <= bag::Message::kLatestNs ? time_ns : otherwise;
@@ -58,6 +60,10 @@ live::Transport::Got TopicTransport::next(bag::Message& message,
   }
   if (held_.topic == kCommand) {
     execute(held_.cdr);
+    return Got::nothing;
+  }
+  if (held_.topic == kWanted) {
+    allocate(held_.cdr);
     return Got::nothing;
   }
   if (!is_current(held_.topic)) {
@@ -182,6 +188,7 @@ live::TransportHealth TopicTransport::health() const {
   if (publisher_) {
     std::ranges::move(publisher_->mismatches(), std::back_inserter(health.faults));
     std::ranges::move(commands_->mismatches(), std::back_inserter(health.faults));
+    std::ranges::move(accelerations_->mismatches(), std::back_inserter(health.faults));
   }
   if (!refused_.empty()) {
     health.faults.push_back(refused_);
@@ -195,7 +202,34 @@ live::Output* TopicTransport::open_output(live::Requests& requests) {
   commands_ = std::make_unique<dds::Subscription>(
       participant_, settings_.names.full_name("~/command"), kTextType, settings_.commands, queue_,
       kCommand, kTuning.command_bytes);
+  const std::string wanted = settings_.names.full_name("~/wanted");
+  acceleration_columns_ = std::make_unique<bag::TopicColumns>(wanted);
+  for (const char* const field :
+       {"linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z"}) {
+    acceleration_columns_->ask(bag::parse_column(wanted + ":accel." + field));
+  }
+  acceleration_columns_->bind({.name = wanted, .type = kWantedType}, definitions_,
+                              bag::Clock::receive);
+  accelerations_ =
+      std::make_unique<dds::Subscription>(participant_, wanted, kWantedType, settings_.subscribed,
+                                          queue_, kWanted, kTuning.wanted_bytes);
   return publisher_.get();
+}
+
+void TopicTransport::allocate(const std::vector<std::byte>& cdr) {
+  const std::string topic = acceleration_columns_->topic();
+  try {
+    acceleration_columns_->begin({.topic = kWanted,
+                                  .receive_ns = held_.receive_ns,
+                                  .publish_ns = held_.receive_ns,
+                                  .sequence = 0,
+                                  .data = cdr});
+    acceleration_columns_->decoder().visit(cdr, *acceleration_columns_);
+    const std::string why_not = publisher_->allocate(acceleration_columns_->values());
+    refused_ = why_not.empty() ? "" : topic + ": " + why_not;
+  } catch (const InputError& error) {
+    refused_ = topic + ": " + error.what();
+  }
 }
 
 void TopicTransport::refuse_long_commands() {

@@ -61,6 +61,7 @@ class TopicTransport final : public live::Transport {
   std::string fault_of(const Wanted& wanted) const;
   void refuse_long_commands();
   void execute(const std::vector<std::byte>& cdr);
+  void allocate(const std::vector<std::byte>& cdr);
 
   const live::Configuration& configuration_;
   NodeSettings settings_;
@@ -75,6 +76,8 @@ class TopicTransport final : public live::Transport {
   std::uint64_t searched_revision_ = 0;
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<dds::Subscription> commands_;
+  std::unique_ptr<dds::Subscription> accelerations_;         // wanted
+  std::unique_ptr<bag::TopicColumns> acceleration_columns_;  // of a twist's axes
   live::Requests* requests_ = nullptr;
   std::uint64_t commands_too_long_ = 0;
   std::string refused_;  // why the last command was refused

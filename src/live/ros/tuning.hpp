@@ -15,6 +15,7 @@ inline constexpr struct Tuning {
   std::chrono::milliseconds check_step{20};         ///< between two searches of `--check`
   std::size_t most_topics = 10'000;     ///< subscriptions ever, with former types; bounds a flood
   std::size_t command_bytes = 256;      ///< of a command; the longest word has 6 letters
+  std::size_t wanted_bytes = 1024;      ///< of wanted accelerations: a header and six numbers
   std::size_t command_letters = 40;     ///< quoted of an unknown command
   std::size_t most_coefficients = 200;  ///< in ~/coefficients; a model has some hundred
 

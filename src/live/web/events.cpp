@@ -97,7 +97,8 @@ Json plan_json(const live::Configuration& configuration) {
        {{"run", fields_plan<live::Health>()},
         {"axes", fields_plan<live::AxisHealth>()},
         {"signals", fields_plan<live::SourceHealth>()},
-        {"thrusters", fields_plan<live::ThrusterHealth>()}}}};
+        {"thrusters", fields_plan<live::ThrusterHealth>()},
+        {"velocities", fields_plan<live::VelocityHealth>()}}}};
 }
 
 // Six digits of each: more than a screen has pixels.
@@ -205,6 +206,7 @@ Json health_json(const live::Health& health, const live::Health& before,
   json["signals"] = file::list(health.sources, source_json);
   json["topics"] = file::list(health.topics, named_json<live::TopicHealth>);
   json["thrusters"] = file::list(learner.thrusters, named_json<live::ThrusterHealth>);
+  json["velocities"] = file::list(health.reckoning.velocities, named_json<live::VelocityHealth>);
   return json;
 }
 

@@ -178,7 +178,7 @@ const live = (() => {
       : health.alerts.some(({ key }) => key === "idle_s") ? "⚠ No messages come"
       : health.axes.every((axis) => axis.ready) ? "▶ Learning" : "▶ Learning; too few samples for a model so far",
     `${count(health.learned)} samples learned, ${number(health.t, 6)} s`);
-    const { run, axes, signals, thrusters } = plan.fields;
+    const { run, axes, signals, thrusters, velocities } = plan.fields;
     const isGood = ({ key, place }) => (key === "r2" && place < 2) || key === "coverage";
     listed(at("good"), axes.filter(isGood), health.axes);
     listed(at("learners"), axes.filter((field) => !isGood(field)), health.axes);
@@ -188,6 +188,7 @@ const live = (() => {
     const all = health.axes.flatMap((axis) => axis.coefficients.map((one) => coefficient(one, axis.name)));
     table(at("coefficients"), ["axis", "term", "coefficient", "standard error", "unit"], all, "coefficients");
     table(at("facts"), [], run.map((field) => [field.label, shown(field, health), field.help]), "facts");
+    if (health.velocities.length > 0) listed(at("velocities"), velocities, health.velocities);
     if (health.thrusters.length > 0) listed(at("thrusters"), thrusters, health.thrusters);
   }
 

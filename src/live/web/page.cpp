@@ -37,7 +37,7 @@ std::string page_html(const live::Configuration& configuration) {
 )" + chart::heading(1, vehicle) +
           R"(<div id="alarm" role="alert" hidden=""></div>
 <p class="lead" id="state" role="status">Connecting …</p>
-<div class="columns"><div id="good"></div><div id="thrusters"></div></div>
+<div class="columns"><div id="good"></div><div id="velocities"></div><div id="thrusters"></div></div>
 <p class="buttons"><button type="button" id="save">Save</button>
 <button type="button" id="freeze">Freeze learning</button>
 <button type="button" id="reset">Reset …</button></p>

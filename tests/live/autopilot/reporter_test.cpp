@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "autopilot/rov.hpp"
@@ -91,6 +94,71 @@ TEST(Reporter, LongTextsComeInPiecesAndAFloodIsDropped) {
   reporter.event("hull touched");
   station.wait(2.0);
   EXPECT_TRUE(station.rov.texts.ends_with("kelpie: hull touched\n")) << station.rov.texts;
+}
+
+// A vehicle without drag at constant speed, all of which is known.
+DeadReckoning at_speed(double u, double v, double r) {
+  OpenLoop loop;
+  loop.accelerations = [](std::span<const double> /*x*/, std::span<double> a) {
+    std::ranges::fill(a, 0.0);
+  };
+  loop.states = {0, 1, 2};
+  loop.error = {0.01, 0.01, 0.01};
+  loop.error_time_s = {1.0, 1.0, 1.0};
+  loop.noise = {0.02, 0.02, 0.01};
+  loop.seen = {{-1.0, 1.0}, {-1.0, 1.0}, {-1.0, 1.0}};
+  DeadReckoning reckoning(loop);
+  reckoning.update(std::array{u, v, r}, 0.0);
+  return reckoning;
+}
+
+TEST(Reporter, VelocitiesGoAsTheWayOfAVelocityLogOrAsOdometry) {
+  const std::vector<std::string> names{"u", "v", "r"};
+  const DeadReckoning reckoning = at_speed(0.4, 0.1, -0.2);
+  for (const bool is_frd : {true, false}) {
+    const double sign = is_frd ? 1.0 : -1.0;  // of sway and yaw
+    for (const auto how :
+         {autopilot::VelocityMessage::delta, autopilot::VelocityMessage::odometry}) {
+      autopilot::Reporter reporter({"udot", "vdot", "rdot"}, how, is_frd);
+      Station station(reporter);
+      for (std::int64_t k = 0; k < 100; ++k) {
+        reporter.reckoned({.stamp_ns = 0,
+                           .data_ns = 1'700'000'000'000'000'000 + k * 20'000'000,
+                           .names = names,
+                           .reckoning = reckoning});
+        station.wait(0.02);
+      }
+      if (how == autopilot::VelocityMessage::delta) {
+        EXPECT_GT(station.rov.heard["VISION_POSITION_DELTA"], 25);
+        EXPECT_LE(station.rov.heard["VISION_POSITION_DELTA"], 40);  // 20 a second
+        const auto field = [&](const char* of, std::size_t index = 0) {
+          return station.rov.field("VISION_POSITION_DELTA", of, index);
+        };
+        const double time_s = 1e-6 * field("time_delta_usec");
+        EXPECT_NEAR(field("position_delta", 0), 0.4 * time_s, 1e-6);
+        EXPECT_NEAR(field("position_delta", 1), sign * 0.1 * time_s, 1e-6);
+        EXPECT_NEAR(field("angle_delta", 2), sign * -0.2 * time_s, 1e-6);
+        EXPECT_EQ(field("confidence"), 100.0);
+      } else {
+        const auto field = [&](const char* of, std::size_t index = 0) {
+          return station.rov.field("ODOMETRY", of, index);
+        };
+        EXPECT_EQ(field("child_frame_id"), 12.0);
+        EXPECT_NEAR(field("vx"), 0.4, 1e-6);
+        EXPECT_NEAR(field("vy"), sign * 0.1, 1e-6);
+        EXPECT_NEAR(field("yawspeed"), sign * -0.2, 1e-6);
+        EXPECT_TRUE(std::isnan(field("x")));
+        EXPECT_NEAR(field("velocity_covariance", 0), 4e-4, 1e-9);   // of u
+        EXPECT_TRUE(std::isnan(field("velocity_covariance", 11)));  // of w: unknown
+        EXPECT_NEAR(field("velocity_covariance", 20), 1e-4, 1e-9);  // of r
+      }
+    }
+  }
+  autopilot::Reporter silent({"udot", "vdot", "rdot"});
+  Station station(silent);
+  silent.reckoned({.stamp_ns = 0, .data_ns = 1, .names = names, .reckoning = reckoning});
+  station.wait(1.0);
+  EXPECT_TRUE(station.rov.heard.empty());
 }
 
 }  // namespace

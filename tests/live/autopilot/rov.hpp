@@ -56,6 +56,7 @@ class Rov {
       const std::string& name = frame.definition->name;
       all_are_signed &= frame.is_signed;
       ++heard[name];
+      last[name] = {frame.definition, {frame.payload.begin(), frame.payload.end()}};
       if (name == "STATUSTEXT") {
         texts += mavlink::text_at(*frame.definition->find("text"), frame.payload) + "\n";
       } else if (name == "NAMED_VALUE_FLOAT") {
@@ -79,7 +80,14 @@ class Rov {
   void restart() { step_ = 0, t_s_ = 0.0; }  ///< The autopilot boots: its time begins anew.
 
   std::map<std::string, double> rates_hz{{"ODOMETRY", 4.0}, {"SERVO_OUTPUT_RAW", 2.0}};
-  std::map<std::string, int> heard;      ///< messages, by name
+  std::map<std::string, int> heard;  ///< messages, by name
+  /// The last message of each name.
+  std::map<std::string, std::pair<const mavlink::Definition*, std::vector<std::byte>>> last;
+  /// A field of the last message of this name.
+  double field(const std::string& name, const char* of, std::size_t index = 0) const {
+    const auto& [definition, payload] = last.at(name);
+    return mavlink::number_at(*definition->find(of), payload, index);
+  }
   std::map<std::string, double> values;  ///< the last of each NAMED_VALUE_FLOAT
   std::string texts;                     ///< of STATUSTEXTs, a line each
   bool all_are_signed = true;            ///< what it has heard

@@ -310,6 +310,27 @@ TEST_F(Live, AFrozenVelocityIsNotLearned) {
       0U);
 }
 
+// From 300 s on the thruster gives a quarter of its thrust: twice the command for the same effect.
+TEST_F(Live, ADamagedThrusterLosesAuthority) {
+  std::vector<Recorded> messages = little_mission(420.0);
+  for (Recorded& message : messages) {
+    if (message.topic == 1 && is_between(message, 300, 1000)) {
+      double command = 0.0;
+      const std::size_t place = message.data.size() - 6 * sizeof(double);
+      std::memcpy(&command, message.data.data() + place, sizeof(command));
+      set_value(message, 2.0 * command);
+    }
+  }
+  const live::Health health = run(messages);
+  ASSERT_NE(health.learner.effectiveness, nullptr);
+  EXPECT_NEAR(health.learner.axes[0].authority, 0.25, 0.05);
+  EXPECT_NE(health.learner.authority.find("n gives 2"), std::string::npos)
+      << health.learner.authority;
+  EXPECT_NE(said_.find("of nominal left"), std::string::npos) << said_;
+  // 0.25 · 0.01 · 20² m/s² ahead against 2 u² + 0.3 u.
+  EXPECT_NEAR(health.learner.held_current, 0.63, 0.05);
+}
+
 TEST_F(Live, BytesThatAreNoMessageDoNoHarm) {
   std::vector<Recorded> messages = little_mission(80.0);
   RandomStream random(5, "noise");

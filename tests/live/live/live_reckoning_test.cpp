@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// Velocities through outages of the velocity log, at the door where messages come in.
+#include "live/live_reckoning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/seconds.hpp"
+#include "kelpie/core/error.hpp"
+#include "live/engine.hpp"
+#include "live/mission.hpp"
+#include "support.hpp"
+
+namespace kelpie::live_reckoning_test {
+namespace {
+
+using testing::kSecond;
+using testing::little_mission;
+using testing::Recorded;
+
+constexpr std::int64_t kBegin = 1'700'000'000 * kSecond;
+
+// The messages, as a vehicle sends them or as a recording has them. A vehicle takes its time: the
+// learner is never far behind.
+class Messages final : public live::Transport {
+ public:
+  Messages(std::vector<Recorded> messages, std::optional<log::Reach> reach)
+      : messages_(std::move(messages)), reach_(reach) {}
+
+  std::function<bool()> is_behind;
+
+  const std::vector<bag::Topic>& topics() const override { return testing::mission_topics(); }
+  std::optional<log::Reach> reach() const override { return reach_; }
+  Got next(bag::Message& message, std::chrono::milliseconds) override {
+    while (!reach_ && is_behind()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (at_ == messages_.size()) {
+      return Got::end;
+    }
+    message = testing::message_of(messages_[at_++]);
+    return Got::message;
+  }
+
+ private:
+  std::vector<Recorded> messages_;
+  std::optional<log::Reach> reach_;
+  std::size_t at_ = 0;
+};
+
+// One estimate of surge.
+struct Estimate {
+  std::int64_t data_ns = 0;
+  double u = 0.0;
+  double deviation = 0.0;
+  double silent_s = 0.0;
+  double step = 0.0;
+  VelocityFault fault = VelocityFault::none;
+
+  bool operator==(const Estimate&) const = default;
+  double t_s() const { return seconds(data_ns - kBegin); }
+};
+
+class Listener final : public live::Output {
+ public:
+  Listener(std::string& text, std::vector<Estimate>& estimates)
+      : text_(text), estimates_(estimates) {}
+  void event(const std::string& line) override { text_ += line + "\n"; }
+  void reckoned(const live::ReckonedSample& sample) override {
+    const DeadReckoning& reckoning = sample.reckoning;
+    estimates_.push_back({.data_ns = sample.data_ns,
+                          .u = reckoning.velocity(0),
+                          .deviation = reckoning.deviation(0),
+                          .silent_s = reckoning.silent_s(),
+                          .step = reckoning.step(),
+                          .fault = reckoning.fault(0)});
+  }
+
+ private:
+  std::string& text_;
+  std::vector<Estimate>& estimates_;
+};
+
+bool is_between(const Recorded& message, double from_s, double to_s) {
+  const double t = static_cast<double>(message.receive_ns - kBegin) / 1e9;
+  return from_s <= t && t < to_s;
+}
+
+double velocity_of(const Recorded& message) {
+  double value = 0.0;
+  std::memcpy(&value, message.data.data() + message.data.size() - 6 * sizeof(double),
+              sizeof(double));
+  return value;
+}
+
+// A velocity of another value, whose linear.y is `y`.
+void set_velocity(Recorded& message, double u, double y = 0.0) {
+  std::byte* const x = message.data.data() + message.data.size() - 6 * sizeof(double);
+  std::memcpy(x, &u, sizeof(u));
+  std::memcpy(x + sizeof(u), &y, sizeof(y));
+}
+
+class Reckoning : public ::testing::Test {
+ protected:
+  live::Health run(const std::vector<Recorded>& messages, bool is_replay = false,
+                   const std::string& live = "") {
+    testing::write_text(folder_ / "x.toml",
+                        testing::mission_config("clock = \"header\"", "align = \"none\"\n" + live));
+    const live::Configuration configuration = live::read_configuration(folder_ / "x.toml", {});
+    std::optional<log::Reach> reach;
+    if (is_replay) {
+      reach = log::Reach{.origin_ns = kBegin + 3 * kSecond / 1000, .end_s = 1000.0};
+    }
+    Messages transport(messages, reach);
+    live::Outputs outputs;
+    std::vector<std::unique_ptr<live::Output>> list;
+    estimates_.clear();
+    said_.clear();
+    list.push_back(std::make_unique<Listener>(said_, estimates_));
+    outputs.use(std::move(list));
+    live::Requests requests;
+    live::Engine engine(configuration, folder_.path(), transport, std::nullopt, outputs, requests);
+    transport.is_behind = [&] { return engine.health().rows_waiting > 0; };
+    engine.run([] { return live::Engine::Action::proceed; });
+    return engine.health();
+  }
+
+  // The measured velocities of the undisturbed mission, by the estimate nearest in time.
+  double largest_error(double from_s, double to_s) const {
+    double largest = 0.0;
+    std::size_t next = 0;
+    for (const Recorded& message : mission_) {
+      if (message.topic != 0 || !is_between(message, from_s, to_s)) {
+        continue;
+      }
+      const double t = static_cast<double>(message.receive_ns - kBegin) / 1e9 - 0.01;
+      while (next + 1 < estimates_.size() && estimates_[next].t_s() < t) {
+        ++next;
+      }
+      largest = std::max(largest, std::abs(estimates_[next].u - velocity_of(message)));
+    }
+    return largest;
+  }
+
+  // Of the measured velocities of the undisturbed mission, within 1.645 standard deviations.
+  double share_inside(double from_s, double to_s) const {
+    std::size_t inside = 0;
+    std::size_t all = 0;
+    std::size_t next = 0;
+    for (const Recorded& message : mission_) {
+      if (message.topic != 0 || !is_between(message, from_s, to_s)) {
+        continue;
+      }
+      const double t = static_cast<double>(message.receive_ns - kBegin) / 1e9 - 0.01;
+      while (next + 1 < estimates_.size() && estimates_[next].t_s() < t) {
+        ++next;
+      }
+      ++all;
+      const double off = std::abs(estimates_[next].u - velocity_of(message));
+      inside += off < 1.645 * std::hypot(estimates_[next].deviation, 5.8e-4) ? 1 : 0;
+    }
+    return static_cast<double>(inside) / static_cast<double>(all);
+  }
+
+  double first_fault_s(VelocityFault fault) const {
+    const auto found = std::ranges::find(estimates_, fault, &Estimate::fault);
+    return found == estimates_.end() ? std::nan("") : found->t_s();
+  }
+
+  double largest_step() const { return std::ranges::max(estimates_, {}, &Estimate::step).step; }
+
+  testing::TemporaryFolder folder_;
+  std::vector<Recorded> mission_ = little_mission(120.0);
+  std::string said_;
+  std::vector<Estimate> estimates_;
+};
+
+TEST_F(Reckoning, ALogWithHolesGivesTheNumbersOfTheLiveRun) {
+  std::vector<Recorded> messages = mission_;
+  std::erase_if(messages, [](const Recorded& m) {
+    return m.topic == 0 && (is_between(m, 60, 65) || is_between(m, 80, 100));
+  });
+  run(messages);
+  const std::vector<Estimate> live = estimates_;
+  ASSERT_GT(live.size(), 1000U);
+  EXPECT_LT(largest_error(80, 100), 0.1);
+  EXPECT_LE(largest_step(), 3.0 + 1e-9);
+  const auto longest = std::ranges::max(live, {}, &Estimate::silent_s);
+  EXPECT_NEAR(longest.silent_s, 20.0, 0.2);
+  // Honest: noise of ±1 mm/s, and what the deviation says.
+  EXPECT_GT(share_inside(80, 100), 0.8);
+  EXPECT_NE(said_.find("the velocity log measures nothing; velocities are reckoned"),
+            std::string::npos)
+      << said_;
+  EXPECT_NE(said_.find("velocities are measured again, after 20."), std::string::npos) << said_;
+  run(messages, true);
+  EXPECT_EQ(estimates_.size(), live.size());
+  EXPECT_TRUE(estimates_ == live);
+}
+
+TEST_F(Reckoning, ExactZerosAreRecognisedAndNotLearned) {
+  std::vector<Recorded> messages = mission_;
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && is_between(message, 80, 100)) {
+      set_velocity(message, 0.0);
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_GE(first_fault_s(VelocityFault::zero), 79.9);
+  EXPECT_LE(first_fault_s(VelocityFault::zero), 81.0);
+  EXPECT_LT(largest_error(80, 100), 0.1);
+  EXPECT_LE(largest_step(), 3.0 + 1e-9);
+  EXPECT_GT(health.learner.rows_stuck, 190U);
+  EXPECT_EQ(health.reckoning.outages, 1U);
+  EXPECT_NEAR(health.reckoning.longest_s, 20.0, 0.2);
+  EXPECT_NE(said_.find("exact zeros; velocities are reckoned"), std::string::npos) << said_;
+}
+
+TEST_F(Reckoning, AFrozenLogIsRecognised) {
+  std::vector<Recorded> messages = mission_;
+  double last = 0.0;
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && is_between(message, 80, 100)) {
+      set_velocity(message, last);
+    } else if (message.topic == 0) {
+      last = velocity_of(message);
+    }
+  }
+  run(messages);
+  EXPECT_GE(first_fault_s(VelocityFault::frozen), 80.0);
+  EXPECT_LE(first_fault_s(VelocityFault::frozen), 81.0);
+  EXPECT_LT(largest_error(80, 100), 0.1);
+  EXPECT_LE(largest_step(), 3.0 + 1e-9);
+}
+
+// The message's own word counts, whatever number stands beside.
+TEST_F(Reckoning, AMessageThatCallsItselfInvalidIsNotUsed) {
+  std::vector<Recorded> messages = mission_;
+  for (Recorded& message : messages) {
+    if (message.topic == 0) {
+      const bool is_valid = !is_between(message, 80, 100);
+      set_velocity(message, is_valid ? velocity_of(message) : 0.77, is_valid ? 1.0 : 0.0);
+    }
+  }
+  const std::string valid = "[live.valid]\n\"/odom:twist.linear.y\" = 1\n";
+  const live::Health health = run(messages, false, valid);
+  EXPECT_NEAR(static_cast<double>(health.sources[0].faults.no_value), 400.0, 3.0);
+  EXPECT_LT(largest_error(80, 100), 0.1);
+  EXPECT_GT(health.rows_incomplete, 170U);
+  EXPECT_EQ(testing::message_of<InputError>([&] {
+              run(messages, false, "[live.valid]\n\"twist\" = 1\n");
+            }).find("live.valid.twist") != std::string::npos,
+            true);
+}
+
+// Noise around a wrong value, beyond all belief: each moves the estimate little.
+TEST_F(Reckoning, WildVelocitiesMoveLittle) {
+  std::vector<Recorded> messages = mission_;
+  std::size_t count = 0;
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && is_between(message, 80, 100) && ++count % 2 == 0) {
+      set_velocity(message, count % 4 == 0 ? 3.0 + 0.01 * static_cast<double>(count)
+                                           : -3.0 - 0.01 * static_cast<double>(count));
+    }
+  }
+  run(messages);
+  EXPECT_LT(largest_error(80, 100), 0.1);
+  EXPECT_LE(largest_step(), 3.0 + 1e-9);
+  EXPECT_FALSE(std::isnan(first_fault_s(VelocityFault::implausible)));
+}
+
+}  // namespace
+}  // namespace kelpie::live_reckoning_test
