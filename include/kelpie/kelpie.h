@@ -262,6 +262,83 @@ kelpie_status kelpie_trained_assess(const kelpie_trained* model, const double* x
 kelpie_status kelpie_trained_predict_with_jacobian(const kelpie_trained* model, const double* x,
                                                    size_t inputs, double* y, size_t targets,
                                                    double* jacobian);
+/** Velocities through outages of the velocity log: kelpie::DeadReckoning (docs/dead_reckoning.md).
+ *  One thread at a time. */
+typedef struct kelpie_reckoning kelpie_reckoning;
+
+/** Why a velocity of the last sample doesn't count as measured; 0: measured. */
+typedef enum kelpie_velocity_fault {
+  KELPIE_VELOCITY_MISSING = 1,    /**< NaN */
+  KELPIE_VELOCITY_REPEATED = 2,   /**< equal to the last bit: no new measurement */
+  KELPIE_VELOCITY_ZERO = 3,       /**< exactly 0 while the vehicle moves */
+  KELPIE_VELOCITY_FROZEN = 4,     /**< one value for too long while the vehicle moves */
+  KELPIE_VELOCITY_IMPLAUSIBLE = 5 /**< beyond three standard deviations */
+} kelpie_velocity_fault;
+
+/** Makes an estimator with a copy of the model so far, to be freed by kelpie_reckoning_free().
+ *  `planar`: not 0 where the first three velocities are surge, sway and yaw rate. KELPIE_BAD_INPUT
+ *  where the model isn't ready or doesn't know its velocities. */
+kelpie_status kelpie_reckoning_create(const kelpie_model* model, int planar,
+                                      kelpie_reckoning** reckoning);
+
+void kelpie_reckoning_free(kelpie_reckoning* reckoning); /**< Frees an estimator, or null. */
+
+/** Goes on with the model as it is now; the estimate stays. */
+kelpie_status kelpie_reckoning_use(kelpie_reckoning* reckoning, const kelpie_model* model);
+
+/** The number of velocities. Requires an estimator. */
+size_t kelpie_reckoning_states(const kelpie_reckoning* reckoning);
+
+/** Advances to the time t [s] and the inputs x of the model; NaN: velocity not measured.
+ *  `covariance` of the measured velocities, row-major over all velocities; null: the noise known to
+ *  the model. Allocates nothing. */
+kelpie_status kelpie_reckoning_update(kelpie_reckoning* reckoning, const double* x, size_t inputs,
+                                      double t, const double* covariance);
+
+/** The velocities, NaN before all were measured once. `covariance`: null, or room for
+ *  states · states values; `faults`: null, or room for a kelpie_velocity_fault per velocity. */
+kelpie_status kelpie_reckoning_velocity(const kelpie_reckoning* reckoning, double* velocity,
+                                        double* covariance, int32_t* faults, size_t states);
+
+/** Time since the velocity log measured a velocity [s]. Requires an estimator. */
+double kelpie_reckoning_silent_s(const kelpie_reckoning* reckoning);
+
+/** What the thrusters of a vehicle can still do: kelpie::Authority (docs/diagnosis.md), as the model
+ *  knows it at the moment of the creation. */
+typedef struct kelpie_authority kelpie_authority;
+
+/** The greatest accelerations of an axis at rest, in the target's unit. */
+typedef struct kelpie_axis_authority {
+  double most;          /**< whatever the other axes do */
+  double least;         /**< in the other direction, < 0 */
+  double nominal_most;  /**< before any change of the vehicle */
+  double nominal_least; /**< the same */
+  double alone_most;    /**< while the other axes are held at 0 */
+  double alone_least;   /**< the same */
+  double left;          /**< share of the nominal range, 1: all */
+} kelpie_axis_authority;
+
+/** Makes an authority for thrusters (names of inputs) with commands from `least` to `most`, to be
+ *  freed by kelpie_authority_free(). KELPIE_BAD_INPUT before the model has learned for some
+ *  minutes, on an input that is no thruster, and on a range without 0. */
+kelpie_status kelpie_authority_create(const kelpie_model* model, const char* const* thrusters,
+                                      const double* least, const double* most, size_t count,
+                                      kelpie_authority** authority);
+
+void kelpie_authority_free(kelpie_authority* authority); /**< Frees an authority, or null. */
+
+/** In words; valid until the authority is freed. Requires an authority. */
+const char* kelpie_authority_text(const kelpie_authority* authority);
+
+/** The greatest accelerations of an axis, in the order of the model's targets. */
+kelpie_status kelpie_authority_axis(const kelpie_authority* authority, size_t axis,
+                                    kelpie_axis_authority* values);
+
+/** Commands, one per thruster, for wanted accelerations, one per target, at rest. `missing`: null,
+ *  or the largest part that isn't reached, of the nominal range. */
+kelpie_status kelpie_authority_allocate(const kelpie_authority* authority, const double* wanted,
+                                        size_t targets, double* commands, size_t count,
+                                        double* missing);
 
 #ifdef __cplusplus
 }

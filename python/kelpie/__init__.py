@@ -10,6 +10,7 @@ the commands of `kelpie` do. `BlockSplit` holds out blocks of time; `plot` draws
 from . import _python  # first: says which Python is wanted
 from . import plot
 from ._alignment import Alignment
+from ._authority import Allocation, Authority
 from ._dead_reckoning import DeadReckoning
 from ._estimators import DynamicsModel, OnlineSVR, RolloutResult, Verdict
 from ._kelpie import __version__
@@ -18,7 +19,7 @@ from ._log import LogArrays, read_log
 from ._splits import BlockSplit
 from ._studies import StudyResult, compare, identify, report, tune
 
-__all__ = ["Alignment", "BlockSplit", "DeadReckoning", "DynamicsModel", "LogArrays", "OnlineSVR",
+__all__ = ["Alignment", "Allocation", "Authority", "BlockSplit", "DeadReckoning", "DynamicsModel", "LogArrays", "OnlineSVR",
            "PlausibilityWarning", "RolloutResult", "StudyResult", "Verdict", "__version__",
            "compare", "identify", "plot", "read_log", "report", "tune"]
 

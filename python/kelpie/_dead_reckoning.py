@@ -24,15 +24,24 @@ class DeadReckoning:
     practice_s : duration of outages simulated while velocities are measured [s]; 0: none.
     between : "linear" or "held", how commands change between samples.
     step_s : longest step of the integrator [s].
+    checks : recognises repeated values and exact zeros of the velocity log (faults).
     """
 
     def __init__(self, model: DynamicsModel | str, *, planar: bool = True, current: float = 0.1,
-                 practice_s: float = 20.0, between: str = "linear", step_s: float = 0.25) -> None:
+                 practice_s: float = 20.0, between: str = "linear", step_s: float = 0.25,
+                 checks: bool = True) -> None:
         if between not in ("linear", "held"):
             raise ValueError(f"between: {between!r} is not known; 'linear' and 'held' are")
-        trained = _kelpie.TrainedModel.read(model) if isinstance(model, str) else model._trained()
-        self._reckoning = _kelpie.DeadReckoning(trained, planar, current, practice_s,
-                                                between == "held", step_s)
+        self._reckoning = _kelpie.DeadReckoning(self._trained(model), planar, current, practice_s,
+                                                between == "held", step_s, checks)
+
+    @staticmethod
+    def _trained(model: DynamicsModel | str) -> _kelpie.TrainedModel:
+        return _kelpie.TrainedModel.read(model) if isinstance(model, str) else model._trained()
+
+    def use(self, model: DynamicsModel | str) -> None:
+        """Goes on with another model of the same inputs; estimate and current stay."""
+        self._reckoning.use(self._trained(model))
 
     def update(self, x: ArrayLike, t: float, covariance: Optional[ArrayLike] = None) -> None:
         """Advances to the time t [s] with one row of inputs; NaN: velocity not measured.
@@ -51,6 +60,17 @@ class DeadReckoning:
     def started(self) -> bool:
         """Whether there was a sample with all velocities."""
         return self._reckoning.started
+
+    @property
+    def faults(self) -> list[str]:
+        """Why a velocity of the last row doesn't count as measured: "none" (measured), "missing",
+        "repeated", "zero", "frozen" or "implausible", (states,)."""
+        return self._reckoning.faults
+
+    @property
+    def step(self) -> float:
+        """Largest change of a velocity by the last measurement, in standard deviations before."""
+        return self._reckoning.step
 
     @property
     def silent_s(self) -> float:

@@ -24,6 +24,7 @@ SettingTexts texts_of(const ModelSettings& settings);
 void bind_settings(pybind11::module_& module);
 void bind_live_model(pybind11::module_& module);
 void bind_trained_model(pybind11::module_& module);
+void bind_authority(pybind11::module_& module);
 void bind_dead_reckoning(pybind11::module_& module);
 void bind_alignment(pybind11::module_& module);
 void bind_studies(pybind11::module_& module);

@@ -3,6 +3,9 @@
 
 #include <pybind11/stl.h>
 
+#include <string>
+#include <vector>
+
 #include "bindings.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "rows.hpp"
@@ -11,13 +14,14 @@ namespace kelpie::python {
 namespace {
 
 DeadReckoning make_reckoning(const TrainedModel& model, bool planar, double current_m_s,
-                             double practice_s, bool held, double step_s) {
+                             double practice_s, bool held, double step_s, bool checks) {
   return DeadReckoning(open_loop(model, OpenLoopPart::steady),
                        {.step_s = step_s,
                         .between = held ? CommandPath::held : CommandPath::linear,
                         .planar = planar,
                         .current_m_s = current_m_s,
-                        .practice_s = practice_s});
+                        .practice_s = practice_s,
+                        .checks = checks});
 }
 
 void update(DeadReckoning& reckoning, const Array& x, double t, const Array& covariance) {
@@ -42,17 +46,33 @@ Array covariance(const DeadReckoning& reckoning) {
   return values;
 }
 
+std::vector<std::string> faults(const DeadReckoning& reckoning) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < reckoning.states(); ++i) {
+    names.emplace_back(fault_name(reckoning.fault(i)));
+  }
+  return names;
+}
+
 }  // namespace
 
 void bind_dead_reckoning(py::module_& module) {
   py::class_<DeadReckoning>(module, "DeadReckoning",
                             "Velocities while they are measured, and while they aren't.")
       .def(py::init(&make_reckoning), py::arg("model"), py::arg("planar"), py::arg("current_m_s"),
-           py::arg("practice_s"), py::arg("held"), py::arg("step_s"))
+           py::arg("practice_s"), py::arg("held"), py::arg("step_s"), py::arg("checks"))
       .def("update", &update, py::arg("x").noconvert(), py::arg("t"),
            py::arg("covariance").noconvert(), "One sample; NaN: not measured.")
       .def("measured_heading", &DeadReckoning::measured_heading, py::arg("heading"),
            py::arg("deviation"))
+      .def(
+          "use",
+          [](DeadReckoning& reckoning, const TrainedModel& model) {
+            reckoning.use(open_loop(model, OpenLoopPart::steady));
+          },
+          py::arg("model"))
+      .def_property_readonly("faults", &faults)
+      .def_property_readonly("step", &DeadReckoning::step)
       .def_property_readonly("started", &DeadReckoning::started)
       .def_property_readonly("silent_s", &DeadReckoning::silent_s)
       .def_property_readonly("velocity", &velocity)

@@ -160,6 +160,21 @@ py::object LiveModel::diagnosis() const {
   return py::dict("findings"_a = list, "health"_a = cause_list(health, names));
 }
 
+Authority LiveModel::authority(
+    const std::vector<std::tuple<std::string, double, double>>& ranges) const {
+  require(model_.diagnosis() != nullptr, "model", "doesn't know its velocities (states)");
+  std::vector<CommandRange> commands;
+  for (const auto& [name, least, most] : ranges) {
+    const auto found = std::ranges::find(inputs_, name);
+    require(found != inputs_.end(), "ranges", "'" + name + "' is no input");
+    commands.push_back(
+        {.input = static_cast<std::size_t>(found - inputs_.begin()), .least = least, .most = most});
+  }
+  const py::gil_scoped_release release;
+  const std::shared_lock lock(mutex_);
+  return Authority(*model_.diagnosis(), std::move(commands));
+}
+
 std::vector<std::string> LiveModel::terms() const {
   const TermSet& terms = model_.mechanisms(0).terms();
   std::vector<std::string> texts;

@@ -40,6 +40,9 @@ class LiveModel {
   py::list status() const;                                ///< one dict per axis
   /// Changes of the vehicle: dict with `findings` and `health`; None without known velocities.
   py::object diagnosis() const;
+  /// What the thrusters can still do, with commands between (input, least, most). Throws InputError
+  /// as Authority does, and without known velocities.
+  Authority authority(const std::vector<std::tuple<std::string, double, double>>& ranges) const;
   Array coefficients() const;  ///< (axes, terms); NaN before there is a model
   std::vector<std::string> terms() const;
 

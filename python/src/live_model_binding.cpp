@@ -44,6 +44,8 @@ void bind_live_model(py::module_& module) {
       .def("status", &LiveModel::status, "Buffer and totals of every axis.")
       .def("diagnosis", &LiveModel::diagnosis,
            "What became of the vehicle, and how its thrusters do; None where it can't be told.")
+      .def("authority", &LiveModel::authority, py::arg("ranges"),
+           "What the thrusters can still do, with commands between (input, least, most).")
       .def("coefficients", &LiveModel::coefficients,
            "Of the physics terms, (axes, terms); NaN before there is a model.")
       .def("trained", &LiveModel::trained,

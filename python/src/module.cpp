@@ -27,6 +27,7 @@ PYBIND11_MODULE(_kelpie, module) {
   kelpie::python::bind_settings(module);
   kelpie::python::bind_live_model(module);
   kelpie::python::bind_trained_model(module);
+  kelpie::python::bind_authority(module);
   kelpie::python::bind_dead_reckoning(module);
   kelpie::python::bind_alignment(module);
   kelpie::python::bind_log(module);

@@ -57,3 +57,39 @@ def test_names_what_is_wrong(learned):
         reckoning.update(x[0][:3], 0.0)
     with pytest.raises(ValueError, match="covariance"):
         reckoning.update(x[0], 0.0, covariance=[1.0])
+
+
+def test_recognises_a_velocity_log_that_gives_zeros_or_one_value(learned):
+    model, t, x = learned
+    for value, name in ((np.zeros(2), "zero"), (x[1199, :2], "frozen")):
+        reckoning = kelpie.DeadReckoning(model)
+        for k in range(1000, 1200):
+            reckoning.update(x[k], t[k])
+        assert reckoning.faults == ["none"] * 3
+        named = None
+        for k in range(1200, 1280):
+            row = x[k].copy()
+            row[:2] = value
+            reckoning.update(row, t[k])
+            if named is None and reckoning.faults[0] == name:
+                named = t[k] - t[1199]
+        assert named is not None and named <= 1.0
+        assert reckoning.faults == [name, name, "none"]
+        assert reckoning.silent_s == pytest.approx(20.0)
+        assert reckoning.velocity == pytest.approx(x[1279, :3], abs=0.05)
+        reckoning.update(x[1280], t[1280])
+        assert reckoning.silent_s == 0.0
+        assert reckoning.step <= 3.0
+
+
+def test_goes_on_with_a_later_model(learned):
+    model, t, x = learned
+    reckoning = kelpie.DeadReckoning(model)
+    for k in range(1000, 1100):
+        reckoning.update(x[k], t[k])
+    before = reckoning.velocity
+    reckoning.use(model)
+    assert reckoning.velocity == pytest.approx(before)
+    other = kelpie.DynamicsModel(buffer=100, rate=4.0, states="x0,x1")
+    with pytest.raises(ValueError):
+        reckoning.use(other.fit(x[:1200], x[:1200, :2]))

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "c/guarded.hpp"
 #include "c/handle.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/motion/diagnosis.hpp"
@@ -28,33 +29,6 @@ static_assert(KELPIE_ACCEPTED == static_cast<int>(Verdict::accepted) &&
 
 // A thread's own, and of a fixed size: telling of a failure neither allocates nor fails.
 thread_local std::array<char, 1024> last_error{};
-
-void keep_error(const char* message) {
-  std::strncpy(last_error.data(), message, last_error.size() - 1);
-}
-
-// Runs what may throw.
-template <typename Work>
-kelpie_status guarded(const Work& work) {
-  try {
-    work();
-    return KELPIE_OK;
-  } catch (const InputError& error) {
-    keep_error(error.what());
-    return KELPIE_BAD_INPUT;
-  } catch (const std::exception& error) {
-    keep_error(error.what());
-  } catch (...) {
-    keep_error("something was thrown that is no exception of the standard library");
-  }
-  return KELPIE_FAILED;
-}
-
-void require_pointer(const char* what, const void* pointer) {
-  if (pointer == nullptr) {
-    throw InputError(what, "is null");
-  }
-}
 
 // What every call with a sample has to get right.
 std::span<const double> checked(std::size_t model_inputs, std::size_t model_targets,
@@ -160,6 +134,11 @@ const char* name_of(const std::vector<std::string>& names, std::size_t i) {
 }
 
 }  // namespace
+
+void keep_error(const char* message) {
+  std::strncpy(last_error.data(), message, last_error.size() - 1);
+}
+
 }  // namespace kelpie
 
 const char* kelpie_last_error() {

@@ -343,6 +343,84 @@ TEST(InC, OneThreadTeachesWhileAnotherPredicts) {
   kelpie_shared* twice = nullptr;
   EXPECT_EQ(kelpie_share(model, &twice), KELPIE_BAD_INPUT);
   EXPECT_EQ(kelpie_share(nullptr, &twice), KELPIE_BAD_INPUT);
+TEST(InC, AuthorityIsThatOfTheClass) {
+  const Model model = made();
+  kelpie_authority* authority = nullptr;
+  const std::array thrusters{"n1", "n2"};
+  const std::array least{-5.0, -5.0};
+  const std::array most{5.0, 5.0};
+  const auto create = [&](const char* const* names) {
+    return kelpie_authority_create(model.get(), names, least.data(), most.data(), 2, &authority);
+  };
+  EXPECT_EQ(create(thrusters.data()), KELPIE_BAD_INPUT);
+  EXPECT_EQ(std::string(kelpie_last_error()).find("diagnosis: knows too little"), 0U);
+  learn(model.get(), 0, 3000);
+  ASSERT_EQ(create(thrusters.data()), KELPIE_OK) << kelpie_last_error();
+  kelpie_axis_authority axis{};
+  ASSERT_EQ(kelpie_authority_axis(authority, 0, &axis), KELPIE_OK);
+  EXPECT_NEAR(axis.most, 0.25, 0.02);  // 0.01 n1²
+  EXPECT_NEAR(axis.left, 1.0, 1e-9);
+  EXPECT_EQ(kelpie_authority_axis(authority, 2, &axis), KELPIE_BAD_INPUT);
+  std::array<double, 2> commands{};
+  double missing = 1.0;
+  const std::array wanted{0.16, 0.0};
+  ASSERT_EQ(kelpie_authority_allocate(authority, wanted.data(), 2, commands.data(), 2, &missing),
+            KELPIE_OK);
+  EXPECT_NEAR(commands[0], 4.0, 0.2);
+  EXPECT_LT(missing, 1e-3);
+  EXPECT_EQ(kelpie_authority_allocate(authority, wanted.data(), 1, commands.data(), 2, nullptr),
+            KELPIE_BAD_INPUT);
+  EXPECT_NE(std::string(kelpie_authority_text(authority)).find("of nominal left"),
+            std::string::npos);
+  kelpie_authority_free(authority);
+  const std::array wrong{"n1", "n3"};
+  EXPECT_EQ(create(wrong.data()), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "thrusters: 'n3' is no input");
+}
+
+TEST(InC, VelocitiesGoOnThroughAnOutage) {
+  const Model model = made();
+  kelpie_reckoning* reckoning = nullptr;
+  EXPECT_EQ(kelpie_reckoning_create(model.get(), 0, &reckoning), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "model: has learned too little so far");
+  learn(model.get(), 0, 1000);
+  ASSERT_EQ(kelpie_reckoning_create(model.get(), 0, &reckoning), KELPIE_OK) << kelpie_last_error();
+  ASSERT_EQ(kelpie_reckoning_states(reckoning), 2U);
+  std::array<double, 2> velocity{};
+  std::array<double, 4> covariance{};
+  std::array<std::int32_t, 2> faults{};
+  const auto update = [&](int k, bool is_silent) {
+    Sample s = sample(k);
+    if (is_silent) {
+      s.x[0] = s.x[1] = kNan;
+    }
+    EXPECT_EQ(kelpie_reckoning_update(reckoning, s.x.data(), 4, s.t, nullptr), KELPIE_OK);
+    EXPECT_EQ(
+        kelpie_reckoning_velocity(reckoning, velocity.data(), covariance.data(), faults.data(), 2),
+        KELPIE_OK);
+    return s;
+  };
+  EXPECT_EQ(kelpie_reckoning_velocity(reckoning, velocity.data(), nullptr, nullptr, 2), KELPIE_OK);
+  EXPECT_TRUE(std::isnan(velocity[0]));
+  for (int k = 1000; k < 1100; ++k) {
+    update(k, false);
+  }
+  EXPECT_EQ(faults[0], 0);
+  const double sure = covariance[0];
+  for (int k = 1100; k < 1120; ++k) {
+    update(k, true);
+  }
+  EXPECT_EQ(faults[0], KELPIE_VELOCITY_MISSING);
+  EXPECT_GT(kelpie_reckoning_silent_s(reckoning), 0.0);
+  EXPECT_GT(covariance[0], sure);
+  EXPECT_TRUE(std::isfinite(velocity[0]) && std::isfinite(velocity[1]));
+  EXPECT_EQ(kelpie_reckoning_use(reckoning, model.get()), KELPIE_OK);
+  const std::array<double, 4> x{};
+  EXPECT_EQ(kelpie_reckoning_update(reckoning, x.data(), 3, 0.0, nullptr), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "x: has 3 values; it has to have 4");
+  EXPECT_EQ(kelpie_reckoning_update(nullptr, x.data(), 4, 0.0, nullptr), KELPIE_BAD_INPUT);
+  kelpie_reckoning_free(reckoning);
+  kelpie_reckoning_free(nullptr);
 }
 
 }  // namespace
