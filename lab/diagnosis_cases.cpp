@@ -115,6 +115,13 @@ std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& veh
   add("th1 and drag sway", 40, true, th(0), [&](To to) { return maker.drag(to, 1, 0.4); });
   add("th2 and th3", 40, true, th(1), th(2));
   add("th3 and force surge", 40, true, th(2), [&](To to) { return maker.brake(to, 0.4); });
+  add("thruster th1 dead", 100, true, [&](To to) { return maker.thruster(to, 0, 1.0); });
+  add(
+      "th1 80 % and th3 50 %", 0, true, [&](To to) { return maker.thruster(to, 0, 0.8); },
+      [&](To to) { return maker.thruster(to, 2, 0.5); });
+  add(
+      "th1 and th2 dead", 100, true, [&](To to) { return maker.thruster(to, 0, 1.0); },
+      [&](To to) { return maker.thruster(to, 1, 1.0); });
   add("th1 and bias r", 40, true, th(0), [&](To to) { return maker.bias(to, 2, 0.4); });
   return cases;
 }

@@ -35,6 +35,32 @@ void show(Diagnosis& diagnosis, const vehicle::LogRow& row) {
   diagnosis.update(x, {row.acceleration.data(), 3}, row.t_s);
 }
 
+// Of the share that is left of each axis, against the true shares of thrust on the nominal matrix.
+double authority_error_of(const Diagnosis& diagnosis, const DiagnosisCase& of) {
+  constexpr double kFull = 20.0;  // rev/s; thrust goes with the square, so any will do
+  const bool is_thrust = std::ranges::all_of(
+      of.truth, [](const Cause& cause) { return cause.kind == CauseKind::thruster; });
+  if (!is_thrust || !diagnosis.knows_thrust()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const Authority authority(diagnosis,
+                            {{3, -kFull, kFull}, {4, -kFull, kFull}, {5, -kFull, kFull}});
+  double worst = 0.0;
+  for (std::size_t i = 0; i < authority.axes().size(); ++i) {
+    double nominal = 0.0;
+    double left = 0.0;
+    for (const ThrusterEffect& one : authority.thrusters()) {
+      const double range = std::max({one.nominal_ahead[i], one.nominal_astern[i], 0.0}) -
+                           std::min({one.nominal_ahead[i], one.nominal_astern[i], 0.0});
+      const auto cause = std::ranges::find(of.truth, one.range.input, &Cause::place);
+      nominal += range;
+      left += cause == of.truth.end() ? range : cause->size * range;
+    }
+    worst = std::max(worst, std::abs(authority.axes()[i].left() - left / nominal));
+  }
+  return worst;
+}
+
 // All cases of one seed: the same drive up to the change.
 class Seed {
  public:
@@ -61,6 +87,7 @@ class Seed {
       show(diagnosis, rows[row]);
     }
     DiagnosisRun run{.of = index, .seed = scenario_.seed, .finding = {}};
+    run.authority_error = authority_error_of(diagnosis, of);
     if (!diagnosis.findings().empty() &&
         diagnosis.findings().back().since_s > change_s_ - kEarly_s) {
       run.found = true;
@@ -117,21 +144,23 @@ chart::TextTable case_table(const DiagnosisStudy& study) {
   chart::TextTable table{
       .title = fmt::format("One change, {:.0f} s after it", study.after_s),
       .head = {"case", "effect", "right", "wrong\nname", "named after\nmedian", "longest",
-               "interval\nholds"},
+               "interval\nholds", "authority\nlargest error"},
       .rows = {},
       .notes = {fmt::format("Simulated vehicle, seeds {} to {}. Right: what was named is what it "
-                            "was, and nothing else. Interval: of those right.",
+                            "was, and nothing else. Interval: of those right. Authority: of the "
+                            "share left of an axis.",
                             study.first_seed, study.first_seed + study.seeds - 1)}};
   const std::vector<CaseSummary> all = summaries(study);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const CaseSummary& one = all[i];
     const DiagnosisCase& of = study.cases[i];
     const bool sized = of.truth.front().kind != CauseKind::frozen;
-    table.rows.push_back({of.name, of.effect > 0 ? fmt::format("{} %", of.effect) : "",
-                          share_text(one.right, one.runs), std::to_string(one.wrong),
-                          fmt::format("{:.0f} s", one.median_s),
-                          fmt::format("{:.0f} s", one.longest_s),
-                          sized ? share_text(one.held, one.right) : ""});
+    table.rows.push_back(
+        {of.name, of.effect > 0 ? fmt::format("{} %", of.effect) : "",
+         share_text(one.right, one.runs), std::to_string(one.wrong),
+         fmt::format("{:.0f} s", one.median_s), fmt::format("{:.0f} s", one.longest_s),
+         sized ? share_text(one.held, one.right) : "",
+         std::isnan(one.authority_error) ? "" : fmt::format("{:.3f}", one.authority_error)});
   }
   return table;
 }
@@ -265,6 +294,8 @@ std::vector<CaseSummary> summaries(const DiagnosisStudy& study) {
   for (const DiagnosisRun& run : study.runs) {
     const DiagnosisCase& of = study.cases[run.of];
     CaseSummary& sum = all[run.of];
+    sum.authority_error =
+        sum.runs == 0 ? run.authority_error : std::fmax(sum.authority_error, run.authority_error);
     ++sum.runs;
     if (named_rightly(of, run)) {
       ++sum.right;
@@ -303,6 +334,7 @@ std::string diagnosis_json(const DiagnosisStudy& study) {
                 {"holds", holds_truth(of, run)},
                 {"found_after_s", run.found_after_s},
                 {"named_after_s", run.named_after_s},
+                {"authority_error", file::number(run.authority_error)},
                 {"truth", of.truth.front().size},
                 {"size", told.size},
                 {"lower", told.lower},

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ struct DiagnosisRun {
   bool found = false;
   double found_after_s = 0.0;  ///< of the change
   double named_after_s = 0.0;  ///< time of the final verdict
+  /// Largest error of the share that is left of an axis, where thrusters alone changed; else NaN.
+  double authority_error = std::numeric_limits<double>::quiet_NaN();
   Finding finding;
 };
 
@@ -95,6 +98,7 @@ struct CaseSummary {
   std::size_t held = 0;   ///< right runs with the true sizes inside the intervals
   double median_s = 0.0;  ///< from the change to the name, in right runs
   double longest_s = 0.0;
+  double authority_error = 0.0;  ///< the largest of all runs; NaN: other causes
 };
 std::vector<CaseSummary> summaries(const DiagnosisStudy& study);  ///< In the order of the cases.
 

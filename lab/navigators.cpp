@@ -14,7 +14,7 @@ namespace {
 class FilterNavigator final : public Navigator {
  public:
   FilterNavigator(const OpenLoop& loop, const DeadReckoningSettings& settings)
-      : reckoning_(loop, settings) {}
+      : reckoning_(loop, settings), noise_(loop.noise) {}
 
   std::unique_ptr<Navigator> clone() const override {
     return std::make_unique<FilterNavigator>(*this);
@@ -35,8 +35,16 @@ class FilterNavigator final : public Navigator {
                       p[0] * s * s - 2.0 * p[1] * c * s + p[3] * c * c};
   }
 
+  std::optional<std::array<double, 4>> velocity_covariance() const override {
+    return std::array{reckoning_.covariance(0, 0) + noise_[0] * noise_[0],
+                      reckoning_.covariance(0, 1), reckoning_.covariance(1, 0),
+                      reckoning_.covariance(1, 1) + noise_[1] * noise_[1]};
+  }
+  double step() const override { return reckoning_.step(); }
+
  private:
   DeadReckoning reckoning_;
+  std::vector<double> noise_;
   double heading_ = 0.0;  // when the velocities fell silent
 };
 

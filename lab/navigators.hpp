@@ -25,6 +25,11 @@ class Navigator {
   /// Covariance of the position since the start of the outage, in the body frame of the start;
   /// empty for navigators without a covariance.
   virtual std::optional<std::array<double, 4>> position_covariance() const { return {}; }
+  /// Covariance of measured minus estimated surge and sway; empty as above.
+  virtual std::optional<std::array<double, 4>> velocity_covariance() const { return {}; }
+  /// Largest change of a velocity by the last measurement, in standard deviations before; 0 for
+  /// navigators without a covariance.
+  virtual double step() const { return 0.0; }
 };
 
 /// A navigator and its name.

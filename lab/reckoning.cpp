@@ -20,6 +20,7 @@ namespace kelpie::lab {
 namespace {
 
 constexpr double kStill = 0.1;            // m, less than which a vehicle hasn't gone anywhere
+constexpr double kReturnS = 2.0;          // of velocities after an outage, for the largest step
 constexpr double kHeardS = 2.0;           // of velocities after a cut of the log, before an outage
 constexpr double kNinetyPercent = 4.605;  // of a χ² with two degrees of freedom
 
@@ -58,6 +59,24 @@ std::vector<NamedNavigator> copies(const std::vector<NamedNavigator>& navigators
   return all;
 }
 
+// Whether a point is within the 90 % ellipse.
+bool is_inside(const std::array<double, 4>& p, double x, double y) {
+  const double det = p[0] * p[3] - p[1] * p[2];
+  return (p[3] * x * x - (p[1] + p[2]) * x * y + p[0] * y * y) / det <= kNinetyPercent;
+}
+
+// When velocities are measured again, for some seconds of the same drive.
+double largest_step(Navigator& navigator, const log::Dataset& data, std::size_t row) {
+  double largest = 0.0;
+  const double until_s = data.times_s[row] + kReturnS;
+  while (++row < data.rows() && data.times_s[row] <= until_s &&
+         data.configurations[row] == data.configurations[row - 1]) {
+    navigator.update(data.input(row), data.times_s[row]);
+    largest = std::max(largest, navigator.step());
+  }
+  return largest;
+}
+
 // One navigator, a copy of which goes through an outage.
 void go_through(const Navigator& before, const log::Dataset& data, const Outage& outage,
                 bool yaw_rate, OutageScore& score) {
@@ -87,11 +106,15 @@ void go_through(const Navigator& before, const log::Dataset& data, const Outage&
   const double x = reckoned.x - truth.x;
   const double y = reckoned.y - truth.y;
   score.errors.push_back(std::hypot(x, y) / distance);
-  if (const auto p = navigator->position_covariance()) {
-    const double det = (*p)[0] * (*p)[3] - (*p)[1] * (*p)[2];
-    const double square = ((*p)[3] * x * x - ((*p)[1] + (*p)[2]) * x * y + (*p)[0] * y * y) / det;
+  const auto p = navigator->position_covariance();
+  const auto q = navigator->velocity_covariance();
+  if (p && q) {
+    const std::span<const double> end = data.input(outage.end);
     ++score.told;
-    score.inside += square <= kNinetyPercent ? 1 : 0;
+    score.inside += is_inside(*p, x, y) ? 1 : 0;
+    score.velocity_inside +=
+        is_inside(*q, end[0] - navigator->velocity(0), end[1] - navigator->velocity(1)) ? 1 : 0;
+    score.steps.push_back(largest_step(*navigator, data, outage.end));
   }
 }
 
@@ -109,6 +132,24 @@ std::string result_title(const ReckoningResult& result) {
   return fmt::format("{}{}, {} rows held out ({}), yaw rate {}", result.source,
                      result.simulated ? " (simulation)" : "", chart::grouped(result.held_out),
                      result.split, result.yaw_rate ? "measured" : "not measured either");
+}
+
+double velocity_inside_share(const OutageScore& score) {
+  return score.told == 0
+             ? std::numeric_limits<double>::quiet_NaN()
+             : static_cast<double>(score.velocity_inside) / static_cast<double>(score.told);
+}
+
+double largest_of(const std::vector<double>& steps) {
+  return steps.empty() ? std::numeric_limits<double>::quiet_NaN() : std::ranges::max(steps);
+}
+
+void add_shares(chart::TextTable& table, const NavigatorScore& navigator, const std::string& name,
+                double (*share)(const OutageScore&)) {
+  std::vector<std::string>& row = table.rows.emplace_back(1, name + ": " + navigator.name);
+  for (const OutageScore& score : navigator.outages) {
+    row.push_back(chart::decimal(share(score)));
+  }
 }
 
 chart::TextTable result_table(const ReckoningResult& result) {
@@ -131,10 +172,10 @@ chart::TextTable result_table(const ReckoningResult& result) {
   }
   for (const NavigatorScore& navigator : result.scores) {
     if (navigator.outages.front().told > 0) {
-      std::vector<std::string>& row = table.rows.emplace_back(1, "within 90 %: " + navigator.name);
-      for (const OutageScore& score : navigator.outages) {
-        row.push_back(chart::decimal(inside_share(score)));
-      }
+      add_shares(table, navigator, "within 90 %", inside_share);
+      add_shares(table, navigator, "velocity within 90 %", velocity_inside_share);
+      add_shares(table, navigator, "largest step on return",
+                 [](const OutageScore& score) { return largest_of(score.steps); });
     }
   }
   return table;
@@ -146,6 +187,8 @@ file::Json outage_json(const OutageScore& score) {
           {"median", file::number(error_quantile(score, 0.5))},
           {"p95", file::number(error_quantile(score, 0.95))},
           {"inside_90", file::number(inside_share(score))},
+          {"velocity_inside_90", file::number(velocity_inside_share(score))},
+          {"largest_step", file::number(largest_of(score.steps))},
           {"errors", file::numbers(score.errors)}};
 }
 
@@ -172,6 +215,8 @@ void ReckoningResult::join(const ReckoningResult& other) {
       mine.errors.insert(mine.errors.end(), theirs.errors.begin(), theirs.errors.end());
       mine.told += theirs.told;
       mine.inside += theirs.inside;
+      mine.velocity_inside += theirs.velocity_inside;
+      mine.steps.insert(mine.steps.end(), theirs.steps.begin(), theirs.steps.end());
     }
   }
 }
@@ -189,7 +234,7 @@ ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& 
   for (const NamedNavigator& one : navigators) {
     NavigatorScore& score = result.scores.emplace_back(NavigatorScore{one.name, {}});
     for (const double seconds : plan.outages_s) {
-      score.outages.push_back({.seconds = seconds, .errors = {}});
+      score.outages.push_back({.seconds = seconds, .errors = {}, .steps = {}});
     }
   }
   auto next = outages.begin();

@@ -24,9 +24,11 @@ struct ReckoningPlan {
 /// The outages of one length, for a navigator.
 struct OutageScore {
   double seconds = 0.0;
-  std::vector<double> errors;  ///< position error over distance, one per outage
-  std::size_t told = 0;        ///< outages with an error ellipse
-  std::size_t inside = 0;      ///< outages that ended inside the 90 % ellipse
+  std::vector<double> errors;       ///< position error over distance, one per outage
+  std::size_t told = 0;             ///< outages with an error ellipse
+  std::size_t inside = 0;           ///< outages that ended inside the 90 % ellipse
+  std::size_t velocity_inside = 0;  ///< of `told`: within the 90 % ellipse of surge and sway
+  std::vector<double> steps;  ///< largest step of each outage's return, in standard deviations
 };
 
 /// A navigator and its scores.
