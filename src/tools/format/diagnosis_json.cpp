@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/diagnosis_json.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,12 +39,44 @@ Json finding_object(const Finding& finding, const DiagnosisNames& names) {
           {"explained", judged ? number(finding.explained) : Json(nullptr)}};
 }
 
+Json authority_object(const Authority& authority, const DiagnosisNames& names) {
+  Json axes = Json::array();
+  for (std::size_t i = 0; i < authority.axes().size(); ++i) {
+    const AxisAuthority& axis = authority.axes()[i];
+    axes.push_back({{"name", names.targets[i]},
+                    {"left", number(axis.left())},
+                    {"most", number(axis.most)},
+                    {"least", number(axis.least)},
+                    {"nominal_most", number(axis.nominal_most)},
+                    {"nominal_least", number(axis.nominal_least)},
+                    {"alone_most", number(axis.alone_most)},
+                    {"alone_least", number(axis.alone_least)}});
+  }
+  const auto thruster = [&](const ThrusterEffect& one) {
+    return Json{{"column", names.inputs[one.range.input]},
+                {"share", number(one.share)},
+                {"range", Json::array({one.range.least, one.range.most})},
+                {"ahead", file::numbers(one.ahead)},
+                {"ahead_width", file::numbers(one.ahead_width)},
+                {"astern", file::numbers(one.astern)},
+                {"astern_width", file::numbers(one.astern_width)}};
+  };
+  return {{"text", authority.text(names)},
+          {"axes", axes},
+          {"thrusters", file::list(authority.thrusters(), thruster)},
+          {"singular_values", file::numbers(authority.singular_values())},
+          {"nominal_singular_values", file::numbers(authority.nominal_singular_values())},
+          {"held_current", number(authority.held_current())}};
+}
+
 }  // namespace
 
 Json diagnosis_object(const study::StreamResult& result) {
   const std::vector<std::string> targets = study::target_names(result);
   const DiagnosisNames names{result.input_names, targets};
+  const std::optional<Authority>& authority = result.diagnosis.authority;
   return {{"why_not", file::text_or_null(result.diagnosis.why_not)},
+          {"authority", authority ? authority_object(*authority, names) : Json(nullptr)},
           {"findings",
            file::list(result.diagnosis.findings,
                       [&](const Finding& finding) { return finding_object(finding, names); })},

@@ -5,10 +5,36 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <utility>
 
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/open_loop.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 
 namespace kelpie::study {
+
+namespace {
+
+// With the commands driven as ranges; none where a command doesn't pass 0, its place at rest.
+std::optional<Authority> authority_of(const DynamicsModel& model) {
+  try {
+    const std::vector<Extremes> seen = open_loop(model.trained(), OpenLoopPart::steady).seen;
+    std::vector<CommandRange> ranges;
+    for (const Cause& thruster : model.diagnosis()->present()) {
+      const Extremes& range = seen[thruster.place];
+      ranges.push_back({.input = thruster.place,
+                        .least = std::min(range.low, 0.0),
+                        .most = std::max(range.high, 0.0)});
+    }
+    return Authority(*model.diagnosis(), std::move(ranges));
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
 
 DiagnosisResult diagnosis_of(const DynamicsModel& model) {
   DiagnosisResult result;
@@ -22,6 +48,7 @@ DiagnosisResult diagnosis_of(const DynamicsModel& model) {
   }
   result.findings = model.findings();
   result.health = diagnosis->health();
+  result.authority = authority_of(model);
   return result;
 }
 
@@ -52,6 +79,10 @@ std::vector<std::string> diagnosis_lines(const StreamResult& result) {
   for (const Finding& finding : result.diagnosis.findings) {
     lines.push_back(fmt::format("since {:.1f} s: {}", finding.since_s,
                                 finding_text(finding, {result.input_names, targets})));
+  }
+  if (!lines.empty() && result.diagnosis.authority) {
+    lines.push_back("left at the end: " +
+                    result.diagnosis.authority->text({result.input_names, targets}));
   }
   return lines;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,6 +102,7 @@ struct DiagnosisResult {
   std::string why_not;            ///< why no diagnosis was possible; empty: diagnosis ran
   std::vector<Finding> findings;  ///< in the order of time
   std::vector<Cause> health;      ///< of every thruster; empty before the reference is complete
+  std::optional<Authority> authority{};  ///< at the end, with the commands driven; empty: unknown
 };
 
 /// One stream from start to end (or to the interruption). result_fields.hpp lists the numbers.
