@@ -104,8 +104,23 @@ void LiveReckoning::use(std::shared_ptr<const ReckoningModel> model) {
   if (reckoning_) {
     reckoning_->use(model_->loop);
   } else {
+    settings_.between = acts_at_once() ? CommandPath::held : CommandPath::linear;
     reckoning_ = std::make_unique<DeadReckoning>(model_->loop, settings_);
   }
+}
+
+// A command holds until the next one; what an actuator makes of commands, and what is measured,
+// changes in between.
+bool LiveReckoning::acts_at_once() const {
+  const StreamPlan& plan = configuration_.plan;
+  for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
+    const bool is_velocity = std::ranges::find(states_, i) != states_.end();
+    const auto source = std::ranges::find(plan.sources, plan.inputs[i], &StreamPlan::Source::name);
+    if (!is_velocity && source != plan.sources.end() && source->between == Interpolation::line) {
+      return false;
+    }
+  }
+  return model_->alignment->actuators.empty();
 }
 
 void LiveReckoning::begin_anew(const Receiver& receiver) {

@@ -58,6 +58,7 @@ class LiveReckoning {
   ReckoningHealth health() const;
 
  private:
+  bool acts_at_once() const;
   bool take_velocities(const Receiver& receiver);
   void begin_anew(const Receiver& receiver);
   void note_faults();
