@@ -36,7 +36,7 @@ kelpie_status kelpie_authority_create(const kelpie_model* model, const char* con
     kelpie::require_pointer("least", least);
     kelpie::require_pointer("most", most);
     kelpie::require_pointer("authority", authority);
-    const kelpie::Diagnosis* const diagnosis = model->model.diagnosis();
+    const kelpie::Diagnosis* const diagnosis = model->model().diagnosis();
     kelpie::require(diagnosis != nullptr, "model", "doesn't know its velocities (states)");
     std::vector<kelpie::CommandRange> ranges;
     for (std::size_t i = 0; i < count; ++i) {

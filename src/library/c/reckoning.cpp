@@ -21,8 +21,8 @@ static_assert(KELPIE_VELOCITY_IMPLAUSIBLE == static_cast<int>(VelocityFault::imp
 
 OpenLoop loop_of(const kelpie_model* model) {
   require_pointer("model", model);
-  require(model->model.ready(), "model", "has learned too little so far");
-  return open_loop(model->model.trained(), OpenLoopPart::steady);
+  require(model->model().ready(), "model", "has learned too little so far");
+  return open_loop(model->model().trained(), OpenLoopPart::steady);
 }
 
 }  // namespace

@@ -343,6 +343,8 @@ TEST(InC, OneThreadTeachesWhileAnotherPredicts) {
   kelpie_shared* twice = nullptr;
   EXPECT_EQ(kelpie_share(model, &twice), KELPIE_BAD_INPUT);
   EXPECT_EQ(kelpie_share(nullptr, &twice), KELPIE_BAD_INPUT);
+}
+
 TEST(InC, AuthorityIsThatOfTheClass) {
   const Model model = made();
   kelpie_authority* authority = nullptr;
