@@ -303,8 +303,8 @@ kelpie_status kelpie_reckoning_velocity(const kelpie_reckoning* reckoning, doubl
 /** Time since the velocity log measured a velocity [s]. Requires an estimator. */
 double kelpie_reckoning_silent_s(const kelpie_reckoning* reckoning);
 
-/** What the thrusters of a vehicle can still do: kelpie::Authority (docs/diagnosis.md), as the model
- *  knows it at the moment of the creation. */
+/** What the thrusters of a vehicle can still do: kelpie::Authority (docs/diagnosis.md), as the
+ * model knows it at the moment of the creation. */
 typedef struct kelpie_authority kelpie_authority;
 
 /** The greatest accelerations of an axis at rest, in the target's unit. */
