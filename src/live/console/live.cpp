@@ -296,6 +296,20 @@ void live_command(const LiveArguments& options) {
   LiveRun(options, configuration).run(*transport, std::move(saved));
 }
 
+CLI::Option* add_demo(CLI::App& command, LiveArguments& options) {
+  CLI::Option* const demo = command.add_flag(
+      "--demo", options.demo,
+      "replay a simulated vehicle, one thruster of which loses 40 % of its thrust half-way; with a "
+      "page at port 8080 and the folder out/demo, begun anew each time");
+  command
+      .add_option("--duration", options.duration_s,
+                  "length of the demonstration, by the vehicle's clock [s]")
+      ->check(within(kShortestDemoS, kLongestDemoS))
+      ->capture_default_str()
+      ->needs(demo);
+  return demo;
+}
+
 }  // namespace
 
 void add_live(CLI::App& app) {
@@ -320,17 +334,7 @@ void add_live(CLI::App& app) {
           "--replay, as it was called")
       ->group("")
       ->excludes(replay);
-  CLI::Option* const demo = command->add_flag(
-      "--demo", options->demo,
-      "replay a simulated vehicle, one thruster of which loses 40 % of its thrust half-way; with a "
-      "page at port 8080 and the folder out/demo, begun anew each time");
-  demo->excludes(replay);
-  command
-      ->add_option("--duration", options->duration_s,
-                   "length of the demonstration, by the vehicle's clock [s]")
-      ->check(within(kShortestDemoS, kLongestDemoS))
-      ->capture_default_str()
-      ->needs(demo);
+  add_demo(*command, *options)->excludes(replay);
   options->log.add_columns_to(*command);
   add_folder(command, "--msg-dir", options->log.source.definitions,
              "folder of .msg files, for types that the recording doesn't define");

@@ -7,11 +7,13 @@
 #include <string_view>
 
 #include "bag/message_text.hpp"
+#include "bag/message_type.hpp"
 #include "core/seconds.hpp"
-#include "wire/scalar.hpp"
 
 namespace kelpie::live {
 namespace {
+
+constexpr const char* kType = "kelpie/msg/Rows";
 
 std::vector<std::string> columns_of(const log::Dataset& rows) {
   std::vector<std::string> columns = rows.input_names;
@@ -27,6 +29,22 @@ std::string field_name(const std::string& column, std::size_t place) {
              : fmt::format("{}{}", kNumbered, place);
 }
 
+std::vector<std::string> fields_of(const log::Dataset& rows) {
+  std::vector<std::string> fields = columns_of(rows);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    fields[i] = field_name(fields[i], i);
+  }
+  return fields;
+}
+
+std::string definition_of(const std::vector<std::string>& fields) {
+  std::string text;
+  for (const std::string& field : fields) {
+    text += "float64 " + field + "\n";
+  }
+  return text;
+}
+
 // Since the first row.
 std::int64_t stamp_ns(const log::Dataset& rows, std::size_t row) {
   return nanoseconds(rows.times_s[row] - rows.times_s.front());
@@ -35,14 +53,11 @@ std::int64_t stamp_ns(const log::Dataset& rows, std::size_t row) {
 }  // namespace
 
 RowReader::RowReader(const log::Dataset& rows)
-    : MessageReader(bag::ReadMode::usual, rows.source), rows_(rows) {
-  std::string definition;
-  const std::vector<std::string> columns = columns_of(rows);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    definition += "float64 " + field_name(columns[i], i) + "\n";
-  }
-  add_topic({.name = kTopic, .type = "kelpie/Rows", .encoding = "ros1", .definition = definition},
-            rows.source);
+    : MessageReader(bag::ReadMode::usual, rows.source),
+      rows_(rows),
+      fields_(fields_of(rows)),
+      builder_(bag::MessageDefinitions().type(kType, definition_of(fields_))) {
+  add_topic({.name = kTopic, .type = kType, .definition = definition_of(fields_)}, rows.source);
 }
 
 Place RowReader::place() const {
@@ -50,11 +65,10 @@ Place RowReader::place() const {
 }
 
 bool RowReader::step(bag::Message& message) {
-  payload_.clear();
+  std::size_t field = 0;
   for (const std::span<const double> values : {rows_.input(next_), rows_.target(next_)}) {
     for (const double value : values) {
-      payload_.resize(payload_.size() + sizeof(double));
-      wire::store_number(std::span(payload_).last(sizeof(double)), wire::FieldKind::float64, value);
+      builder_.set(fields_[field++], value);
     }
   }
   const std::int64_t time_ns = stamp_ns(rows_, next_);
@@ -62,7 +76,7 @@ bool RowReader::step(bag::Message& message) {
              .receive_ns = time_ns,
              .publish_ns = time_ns,
              .sequence = static_cast<std::uint32_t>(next_),
-             .data = payload_};
+             .data = builder_.bytes()};
   ++next_;
   return true;
 }
@@ -71,9 +85,9 @@ bool RowReader::step(bag::Message& message) {
 std::vector<StreamPlan::Source> RowReader::sources_of(const log::Dataset& rows) {
   std::vector<StreamPlan::Source> sources;
   const std::vector<std::string> columns = columns_of(rows);
+  const std::vector<std::string> fields = fields_of(rows);
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    sources.push_back(
-        {.name = columns[i], .from = std::string(kTopic) + ":" + field_name(columns[i], i)});
+    sources.push_back({.name = columns[i], .from = std::string(kTopic) + ":" + fields[i]});
   }
   return sources;
 }

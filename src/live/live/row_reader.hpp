@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bag/message_builder.hpp"
 #include "bag/reader.hpp"
 #include "kelpie/stream/stream_plan.hpp"
 #include "log/dataset.hpp"
@@ -33,8 +34,9 @@ class RowReader final : public bag::MessageReader {
   bool at_end() const override { return next_ == rows_.rows(); }
 
   const log::Dataset& rows_;
+  std::vector<std::string> fields_;  // inputs, then targets
+  bag::MessageBuilder builder_;
   std::size_t next_ = 0;
-  std::vector<std::byte> payload_;
 };
 
 }  // namespace kelpie::live
