@@ -26,9 +26,13 @@ MESSAGES = {
     "SERVO_OUTPUT_RAW": (36, 222, "<I8HB"),
     "ATTITUDE": (30, 39, "<I6f"),
     "LOCAL_POSITION_NED": (32, 185, "<I6f"),
+    "PARAM_REQUEST_READ": (20, 214, "<hBB16s"),
+    "PARAM_VALUE": (22, 220, "<fHH16sB"),
 }
 NAMES = {number: name for name, (number, _, _) in MESSAGES.items()}
 SET_MESSAGE_INTERVAL = 511
+PARAMETERS = {"FRAME_CONFIG": 1.0, **{f"SERVO{n}_FUNCTION": 32.0 + n for n in range(1, 7)},
+              **{f"MOT_{n}_DIRECTION": 1.0 for n in range(1, 7)}}
 HEALTH = ("msgs_lost", "rows_lost", "learned", "frozen", "delay_ms")  # beside predictions
 
 
@@ -171,6 +175,11 @@ def listen(line, rates, due, now, name, values):
             due[asked] = now
             print(f"{asked} comes at {rates[asked]:g} Hz from now on")
         line.send("COMMAND_ACK", SET_MESSAGE_INTERVAL, 0 if known else 3)
+    elif name == "PARAM_REQUEST_READ":
+        asked = values[3].rstrip(b"\0").decode(errors="replace")
+        if asked in PARAMETERS:
+            real32 = 9  # MAV_PARAM_TYPE_REAL32
+            line.send("PARAM_VALUE", PARAMETERS[asked], len(PARAMETERS), 65535, values[3], real32)
     elif name == "NAMED_VALUE_FLOAT":
         text = values[2].rstrip(b"\0").decode(errors="replace")
         if text not in HEALTH:

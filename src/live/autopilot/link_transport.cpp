@@ -66,6 +66,17 @@ std::vector<RateKeeper::MessageRate> wanted_rates(const live::Configuration& con
   return wanted;
 }
 
+// Outputs of the vehicle that [log] names.
+std::vector<std::size_t> named_outputs(const live::Configuration& configuration) {
+  std::vector<std::size_t> outputs;
+  for (const std::string& column : configuration.columns()) {
+    if (const std::size_t output = log::output_of(column); output > 0 && column[0] != '/') {
+      outputs.push_back(output);
+    }
+  }
+  return outputs;
+}
+
 // Senders that [log] names by numbers: "/mavlink/2/1/ODOMETRY".
 std::vector<Senders::Id> named_senders(const live::Configuration& configuration) {
   std::vector<Senders::Id> named;
@@ -113,7 +124,10 @@ LinkTransport::LinkTransport(const live::Configuration& configuration, const Lin
       signing_(settings.key ? std::optional<Signing>(*settings.key) : std::nullopt),
       senders_({.system = settings.system, .component = settings.component},
                named_senders(configuration)),
+      outputs_(named_outputs(configuration)),
       rates_(wanted_),
+      parameters_(outputs_),
+      mirrors_(configuration.log.mirror_motors),
       reporter_(configuration.plan.targets, settings.velocity, settings.is_frd),
       writer_(writer_of(1)) {
   check_fields(configuration);
@@ -162,6 +176,9 @@ void LinkTransport::send_due(Clock::time_point now) {
   if (const std::optional<RateKeeper::MessageRate> wanted = rates_.next_request(now)) {
     request_rate(*wanted);
   }
+  if (const std::optional<std::string> name = parameters_.next_request(now)) {
+    request_parameter(*name);
+  }
   if (reports_) {
     const double boot_ms = std::chrono::duration<double, std::milli>(now - began_).count();
     reporter_.send_due(now, std::fmod(std::trunc(boot_ms), 4294967296.0), writer_,
@@ -181,6 +198,7 @@ mavlink::FrameWriter LinkTransport::writer_of(std::uint8_t system) {
 void LinkTransport::ask(const Senders::Sender& autopilot) {
   asked_ = autopilot.id;
   rates_ = RateKeeper(wanted_);
+  parameters_ = ParameterKeeper(outputs_);
   line_->answer(autopilot.from);
   if (settings_.system_id == 0) {
     writer_ = writer_of(autopilot.id.system);
@@ -202,6 +220,13 @@ void LinkTransport::request_rate(const RateKeeper::MessageRate& wanted) {
   writer_.begin("COMMAND_LONG").set("command", kSetMessageInterval);
   writer_.set("target_system", asked_->system).set("target_component", asked_->component);
   writer_.set("param1", wanted.id).set("param2", std::floor(kMicroseconds / wanted.rate_hz));
+  line_->write(writer_.finish());
+}
+
+void LinkTransport::request_parameter(const std::string& name) {
+  constexpr double kByName = -1.0;
+  writer_.begin("PARAM_REQUEST_READ").set("param_id", name).set("param_index", kByName);
+  writer_.set("target_system", asked_->system).set("target_component", asked_->component);
   line_->write(writer_.finish());
 }
 
@@ -255,6 +280,10 @@ void LinkTransport::hear_vehicle(const mavlink::Frame& frame) {
   if (frame.definition->name == "COMMAND_ACK" && value("command") == kSetMessageInterval) {
     rates_.acknowledge(static_cast<int>(value("result")), now);
   }
+  if (frame.definition->name == "PARAM_VALUE") {
+    parameters_.hear(mavlink::text_at(*frame.definition->find("param_id"), frame.payload),
+                     value("param_value"));
+  }
 }
 
 std::optional<std::size_t> LinkTransport::topic_of(const mavlink::Frame& frame) {
@@ -285,7 +314,11 @@ std::vector<std::string> LinkTransport::vehicle_faults() const {
   if (Clock::now() - vehicle_heartbeat_ > kTuning.longest_silence) {
     return {settings_.text + ": the vehicle's HEARTBEAT has ceased"};
   }
-  return rates_.faults();
+  std::vector<std::string> faults = rates_.faults();
+  if (mirrors_) {
+    std::ranges::copy(parameters_.faults(), std::back_inserter(faults));
+  }
+  return faults;
 }
 
 live::TransportHealth LinkTransport::health() const {

@@ -13,6 +13,7 @@
 
 #include "autopilot/byte_line.hpp"
 #include "autopilot/link_settings.hpp"
+#include "autopilot/parameter_keeper.hpp"
 #include "autopilot/rate_keeper.hpp"
 #include "autopilot/reporter.hpp"
 #include "autopilot/senders.hpp"
@@ -27,8 +28,9 @@ namespace kelpie::autopilot {
 
 /// Messages of an autopilot over UDP or a serial line, named as in .tlog files. After an
 /// autopilot's first HEARTBEAT, requests the messages that [log] names at their rates, until the
-/// rates are met; sends an own HEARTBEAT once a second and the Reporter's frames. Senders chooses
-/// the vehicle; with a key, Signing checks every frame.
+/// rates are met, and the parameters of the outputs that [log] names (ParameterKeeper); sends an
+/// own HEARTBEAT once a second and the Reporter's frames. Senders chooses the vehicle; with a key,
+/// Signing checks every frame.
 class LinkTransport final : public live::Transport {
  public:
   /// Throws InputError (file, topic or column) where [log] names an unknown message or field.
@@ -51,6 +53,7 @@ class LinkTransport final : public live::Transport {
   void send_heartbeat();
   void ask(const Senders::Sender& autopilot);
   void request_rate(const RateKeeper::MessageRate& wanted);
+  void request_parameter(const std::string& name);
   bool is_signed_well(const mavlink::Frame& frame);
   bool accept(const mavlink::Frame& frame, bag::Message& message);
   void hear_vehicle(const mavlink::Frame& frame);
@@ -64,7 +67,10 @@ class LinkTransport final : public live::Transport {
   std::optional<Signing> signing_;
   Senders senders_;
   std::optional<Senders::Id> asked_;
+  const std::vector<std::size_t> outputs_;  // of the vehicle, in [log]
   RateKeeper rates_;
+  ParameterKeeper parameters_;
+  const bool mirrors_;
   Reporter reporter_;
   bool reports_ = false;
   mavlink::FrameParser parser_;

@@ -34,6 +34,10 @@ inline constexpr struct Tuning {
   std::chrono::seconds between_requests{5};      ///< of one message; docs/live.md
   double enough = 0.8;  ///< of the requested rate: schedulers round; docs/live.md
 
+  // Parameters
+  std::chrono::milliseconds between_parameters{500};  ///< of one request without an answer
+  int most_asked = 10;  ///< requests of one parameter: another autopilot may not have it
+
   // Reports
   std::chrono::milliseconds between_values{200};     ///< docs/live.md
   std::chrono::milliseconds between_velocities{50};  ///< ArduSub takes a velocity log at 20 Hz

@@ -221,6 +221,7 @@ Fields Configuration::identity() const {
       {"log.targets", join_text(plan.targets, ", ")},
       {"log.rate", number_text(plan.rate_hz)},
       {"log.clock", log.clock == bag::Clock::header ? "header" : "receive"},
+      {"log.mirror_motors", log.mirror_motors ? "true" : "false"},
       {"log.gap", number_text(plan.gap_s)},
       {"log.filter", plan.derivative.window == FilterWindow::causal ? "causal" : "centred"},
       {"log.window", number_text(plan.derivative.window_s)},

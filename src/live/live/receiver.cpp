@@ -8,6 +8,8 @@
 #include "kelpie/core/error.hpp"
 #include "live/checkpoint.hpp"
 #include "live/tuning.hpp"
+#include "log/ardusub.hpp"
+#include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 
 namespace kelpie::live {
@@ -44,6 +46,7 @@ Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_
     : definitions_(configuration.log.messages),
       clock_(configuration.log.clock),
       armed_only_(configuration.log.armed_only),
+      mirror_motors_(configuration.log.mirror_motors),
       stream_(configuration.plan),
       columns_(bag::columns_by_topic(configuration.columns())),
       velocities_(velocities_of(configuration.plan)),
@@ -64,6 +67,10 @@ Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_
         }
       }
     }
+  }
+  for (const StreamPlan::Source& source : plan.sources) {
+    outputs_.push_back(mirror_motors_ ? log::output_of(source.from) : 0);
+    factors_.emplace_back();
   }
   for (const std::string& input : plan.inputs) {
     inputs_.push_back(source_called(plan, input));
@@ -91,7 +98,7 @@ void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message
   while (by_topic_.size() < topics.size()) {
     bind(topics[by_topic_.size()]);
   }
-  if (armed_only_) {
+  if (armed_only_ || mirror_motors_) {
     autopilot_.hear(topics, message);
   }
   const std::size_t place = by_topic_[message.topic];
@@ -112,9 +119,10 @@ void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message
   for (std::size_t column = 0; column < sources_[place].size(); ++column) {
     for (const std::size_t source : sources_[place][column]) {
       const bool counts = is_valid || std::ranges::find(velocities_, source) == velocities_.end();
-      add({.source = source,
-           .time_ns = columns.time_ns(),
-           .value = counts ? columns.values()[column] : std::numeric_limits<double>::quiet_NaN()});
+      double value = counts ? columns.values()[column] : std::numeric_limits<double>::quiet_NaN();
+      if (mirror(source, health_[place], value)) {
+        add({.source = source, .time_ns = columns.time_ns(), .value = value});
+      }
     }
   }
 }
@@ -124,6 +132,26 @@ bool Receiver::is_valid(std::size_t topic) const {
   return std::ranges::all_of(validity_, [&](const Validity& one) {
     return one.topic != topic || columns_[topic]->values()[one.column] >= one.least;
   });
+}
+
+// Pulses wait for the parameters that tell their motor's direction: false until then.
+bool Receiver::mirror(std::size_t source, TopicHealth& health, double& value) {
+  const std::size_t output = outputs_[source];
+  if (output == 0) {
+    return true;
+  }
+  std::optional<double>& factor = factors_[source];
+  if (!factor) {
+    factor = log::pulse_factor(autopilot_.parameters(), output);
+    if (!factor) {
+      health.refused = "waits for the vehicle's parameter " +
+                       log::next_parameter(autopilot_.parameters(), output) + " (mirror_motors)";
+      return false;
+    }
+    health.refused.clear();
+  }
+  value = kNeutralPulseUs + *factor * (value - kNeutralPulseUs);
+  return true;
 }
 
 void Receiver::add(const Held& sample) {

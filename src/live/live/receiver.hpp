@@ -74,6 +74,7 @@ class Receiver {
 
   void bind(const bag::Topic& topic);
   bool is_valid(std::size_t topic) const;
+  bool mirror(std::size_t source, TopicHealth& health, double& value);
   void add(const Held& sample);
   void find_origin();
   void feed(const Held& sample);
@@ -84,6 +85,9 @@ class Receiver {
   bag::MessageDefinitions definitions_;
   bag::Clock clock_;
   bool armed_only_;
+  bool mirror_motors_;
+  std::vector<std::size_t> outputs_;            // of each source; 0: no output of an autopilot
+  std::vector<std::optional<double>> factors_;  // of each source's pulses, once told
   bag::AutopilotState autopilot_;
   SampleStream stream_;
   std::vector<std::unique_ptr<bag::TopicColumns>> columns_;     // per topic in use

@@ -108,7 +108,8 @@ void check_all_met(const std::vector<std::unique_ptr<TopicColumns>>& wanted,
 }
 
 std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& definitions,
-                               std::span<const std::string> columns, Clock clock, bool armed_only) {
+                               std::span<const std::string> columns, Clock clock, bool armed_only,
+                               std::map<std::string, double>* parameters) {
   const std::vector<std::unique_ptr<TopicColumns>> wanted = columns_by_topic(columns);
   std::vector<SeriesBuilder> builders;
   builders.reserve(wanted.size());
@@ -131,7 +132,7 @@ std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& def
   AutopilotState autopilot;
   for (Message message; bag.next(message);) {
     bind_new_topics();
-    if (armed_only) {
+    if (armed_only || parameters != nullptr) {
       autopilot.hear(bag.topics(), message);
     }
     SeriesBuilder* const builder = by_topic[message.topic];
@@ -143,6 +144,9 @@ std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& def
   }
   bind_new_topics();
   check_all_met(wanted, bag);
+  if (parameters != nullptr) {
+    *parameters = autopilot.parameters();
+  }
   std::vector<Series> series;
   series.reserve(builders.size());
   for (SeriesBuilder& builder : builders) {
@@ -163,10 +167,10 @@ const Series& series_with(std::span<const Series> all, const std::string& column
 }
 
 std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
-                                std::span<const std::string> columns, Clock clock,
-                                bool armed_only) {
+                                std::span<const std::string> columns, Clock clock, bool armed_only,
+                                std::map<std::string, double>* parameters) {
   try {
-    return read_named(bag, definitions, columns, clock, armed_only);
+    return read_named(bag, definitions, columns, clock, armed_only, parameters);
   } catch (const InputError& error) {
     if (!error.place().file.empty()) {
       throw;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,9 +39,10 @@ const Series& series_with(std::span<const Series> all, const std::string& column
 /// sequence that never had the element, a topic without messages, definition or known encoding, no
 /// header for the header clock; damage, but in recover mode, where messages that cannot be decoded
 /// are skipped and noted. `armed_only`: messages while the autopilot says that its motors are
-/// disarmed are left out (AutopilotState).
+/// disarmed are left out (AutopilotState). `parameters`, if any, is set to the autopilot's.
 std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
                                 std::span<const std::string> columns, Clock clock,
-                                bool armed_only = false);
+                                bool armed_only = false,
+                                std::map<std::string, double>* parameters = nullptr);
 
 }  // namespace kelpie::bag

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "core/text.hpp"
@@ -12,6 +13,8 @@
 
 namespace kelpie::bag {
 namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 void check_array_sizes(const ColumnName& column, const Field& structure, std::size_t level,
                        std::string_view rest) {
@@ -88,11 +91,10 @@ void TopicColumns::bind(const Topic& topic, const MessageDefinitions& definition
   } catch (const InputError& error) {
     throw InputError(topic.name, error.what());
   }
-  leaves_.clear();
+  bound_.clear();
   wanted_.assign(decoder_.type().leaves.size(), false);
   for (const ColumnName& column : columns_) {
-    leaves_.push_back(leaf_of(column, decoder_.type()));
-    wanted_[leaves_.back()] = true;
+    bound_.push_back(bound(column));
   }
   if (clock == Clock::header) {
     stamp_ = StampReader(decoder_);
@@ -107,16 +109,62 @@ void TopicColumns::bind(const Topic& topic, const MessageDefinitions& definition
   is_bound_ = true;
 }
 
+bool TopicColumns::Element::is(std::size_t other, std::span<const std::uint32_t> at) const {
+  return leaf == other && std::ranges::equal(indices, at);
+}
+
+TopicColumns::Element TopicColumns::element_of(const ColumnName& column) {
+  Element element{.leaf = leaf_of(column, decoder_.type()), .indices = column.indices};
+  wanted_[element.leaf] = true;
+  return element;
+}
+
+TopicColumns::BoundColumn TopicColumns::bound(const ColumnName& column) {
+  const auto unit = [this](const Element& element) {
+    return decoder_.type().leaves[element.leaf].unit;
+  };
+  BoundColumn result;
+  const std::size_t slash = column.name.find('/', column.topic.size() + 1);
+  const MessageType& type = decoder_.type();
+  if (slash == std::string::npos || type.find(column.pattern) < type.leaves.size()) {
+    result.field = element_of(column);
+    result.unit = unit(result.field);
+    return result;
+  }
+  result.field = element_of(parse_column(column.name.substr(0, slash)));
+  result.divisor = element_of(parse_column(column.topic + ":" + column.name.substr(slash + 1)));
+  if (const std::string over = unit(*result.divisor); !unit(result.field).empty()) {
+    result.unit = unit(result.field) + (over.empty() ? "" : "/" + over);
+  }
+  return result;
+}
+
 void TopicColumns::begin(const Message& message) {
   receive_ns_ = message.receive_ns;
-  std::ranges::fill(values_, std::numeric_limits<double>::quiet_NaN());
+  std::ranges::fill(values_, kMissing);
+  for (BoundColumn& column : bound_) {
+    column.field.value = kMissing;
+    if (column.divisor) {
+      column.divisor->value = kMissing;
+    }
+  }
 }
 
 void TopicColumns::number(std::size_t leaf, std::span<const std::uint32_t> indices, double value) {
   stamp_.number(leaf, value);
-  for (std::size_t k = 0; k < leaves_.size(); ++k) {
-    if (leaves_[k] == leaf && std::ranges::equal(columns_[k].indices, indices)) {
-      values_[k] = value;
+  for (std::size_t k = 0; k < bound_.size(); ++k) {
+    BoundColumn& column = bound_[k];
+    const bool is_field = column.field.is(leaf, indices);
+    if (!column.divisor) {
+      values_[k] = is_field ? value : values_[k];
+      continue;
+    }
+    const bool is_divisor = column.divisor->is(leaf, indices);
+    column.field.value = is_field ? value : column.field.value;
+    column.divisor->value = is_divisor ? value : column.divisor->value;
+    if (is_field || is_divisor) {
+      const double quotient = column.field.value / column.divisor->value;
+      values_[k] = std::isfinite(quotient) ? quotient : kMissing;
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,7 +18,8 @@
 namespace kelpie::bag {
 
 /// A column's name taken apart: "/a:b[2].c" has the topic "/a", the pattern "b[].c" and the
-/// indices {2}.
+/// indices {2}. Where the type has no field of that name, "/a:b[2]/c" is the quotient of two fields
+/// of a message, such as a way over its time.
 struct ColumnName {
   std::string name;
   std::string topic;
@@ -60,9 +62,7 @@ class TopicColumns final : public NumberVisitor {
   const std::vector<ColumnName>& columns() const { return columns_; }
   bool is_bound() const { return is_bound_; }
   /// Unit of a column from the definition; empty: undefined. Requires is_bound().
-  const std::string& unit(std::size_t column) const {
-    return decoder_.type().leaves[leaves_[column]].unit;
-  }
+  const std::string& unit(std::size_t column) const { return bound_[column].unit; }
   const Decoder& decoder() const {
     return decoder_;
   }  ///< Requires is_bound(), as the members below.
@@ -77,9 +77,25 @@ class TopicColumns final : public NumberVisitor {
   void number(std::size_t leaf, std::span<const std::uint32_t> indices, double value) override;
 
  private:
+  struct Element {
+    std::size_t leaf = 0;
+    std::vector<std::uint32_t> indices{};
+    double value = 0.0;  // of the present message
+
+    bool is(std::size_t other, std::span<const std::uint32_t> at) const;
+  };
+  struct BoundColumn {
+    Element field{};
+    std::optional<Element> divisor{};
+    std::string unit{};
+  };
+
+  Element element_of(const ColumnName& column);
+  BoundColumn bound(const ColumnName& column);
+
   std::string topic_;
   std::vector<ColumnName> columns_;
-  std::vector<std::size_t> leaves_;
+  std::vector<BoundColumn> bound_;
   Decoder decoder_;
   std::vector<bool> wanted_;
   StampReader stamp_;

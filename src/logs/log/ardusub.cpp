@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 
 #include "core/text.hpp"
@@ -71,6 +72,43 @@ std::vector<MotorActuator> motor_outputs(const ParameterMap& parameters) {
   }
   std::ranges::stable_sort(outputs, {}, &MotorActuator::motor);
   return outputs;
+}
+
+std::size_t output_of(std::string_view column) {
+  const std::size_t colon = std::min(column.rfind(':'), column.size());
+  const std::string_view topic = column.substr(0, colon);
+  const std::string_view kind = topic.substr(topic.rfind('/') + 1);
+  if (kind != "SERVO_OUTPUT_RAW" && kind != "RCOU") {
+    return 0;
+  }
+  const std::size_t digit = std::min(column.find_first_of("0123456789", colon), column.size());
+  return std::strtoul(std::string(column.substr(digit)).c_str(), nullptr, 10);
+}
+
+std::string next_parameter(const ParameterMap& parameters, std::size_t output) {
+  const std::string function = fmt::format("SERVO{}_FUNCTION", output);
+  if (!parameters.contains(function)) {
+    return function;
+  }
+  for (const MotorActuator& motor : motor_outputs(parameters)) {
+    const std::string direction = fmt::format("MOT_{}_DIRECTION", motor.motor);
+    if (motor.output == output && !parameters.contains(direction)) {
+      return direction;
+    }
+  }
+  return "";
+}
+
+std::optional<double> pulse_factor(const ParameterMap& parameters, std::size_t output) {
+  if (!next_parameter(parameters, output).empty()) {
+    return std::nullopt;
+  }
+  for (const MotorActuator& motor : motor_outputs(parameters)) {
+    if (motor.output == output) {
+      return motor.direction;
+    }
+  }
+  return 1.0;
 }
 
 std::string other_outputs_text(const ParameterMap& parameters) {

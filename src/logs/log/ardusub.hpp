@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kelpie::log {
@@ -22,6 +24,17 @@ using ParameterMap = std::map<std::string, double>;
 /// The outputs that are motors by SERVOn_FUNCTION, in the order of the motors' numbers; empty: the
 /// parameters name no motor.
 std::vector<MotorActuator> motor_outputs(const ParameterMap& parameters);
+
+/// The number of an output by its column: 3 of "SERVO_OUTPUT_RAW:servo3_raw", of
+/// "/mavlink/1/1/SERVO_OUTPUT_RAW:servo3_raw" and of "RCOU:C3"; 0: the column is no output.
+std::size_t output_of(std::string_view column);
+
+/// The factor of an output's pulse about kNeutralPulseUs, as far as parameters tell: 1, or −1 for a
+/// motor with MOT_n_DIRECTION −1. Empty: SERVOn_FUNCTION, or the direction of a motor, is unknown.
+std::optional<double> pulse_factor(const ParameterMap& parameters, std::size_t output);
+
+/// Names of the parameters that pulse_factor() needs next; empty: none.
+std::string next_parameter(const ParameterMap& parameters, std::size_t output);
 
 /// Outputs with another use, for the user: "12 (RC input 10), 16 (camera tilt)"; or "".
 std::string other_outputs_text(const ParameterMap& parameters);

@@ -218,6 +218,21 @@ CandidateColumn column_of(const bag::TopicReport& topic, const std::string& path
   return column;
 }
 
+// Of a quotient of two fields, "way[0]/time".
+CandidateColumn quotient_of(const bag::TopicReport& topic, const std::string& path) {
+  const std::size_t slash = path.find('/');
+  CandidateColumn column = column_of(topic, path.substr(0, slash));
+  const CandidateColumn over = column_of(topic, path.substr(slash + 1));
+  if (!column.exists() || !over.exists() || over.low <= 0.0) {
+    return {};
+  }
+  column.name += path.substr(slash);
+  column.unit += over.unit.empty() ? "" : "/" + over.unit;
+  column.low = std::min(column.low / over.low, column.low / over.high);
+  column.high = std::max(column.high / over.low, column.high / over.high);
+  return column;
+}
+
 bool fits(const KnownMessage& known, const bag::TopicReport& topic) {
   return known.type == short_type(topic.type) &&
          lower(topic.name).find(known.topic) != std::string::npos;
@@ -260,6 +275,11 @@ class Finder {
   }
 
  private:
+  // A companion computer sends what its DVL or camera measures: this measurement is the vehicle's.
+  static bool is_of_other_system(const bag::TopicReport& topic) {
+    return topic.name.starts_with("/mavlink/") && topic.type != "VISION_POSITION_DELTA";
+  }
+
   static bool find_known(const bag::TopicReport& topic, std::vector<Candidate>* found) {
     std::set<Part> parts;
     for (const KnownMessage& known : known_messages()) {
@@ -267,16 +287,17 @@ class Finder {
       if (!fits(known, topic) || parts.contains(known.part) || parts.contains(Part::commands)) {
         continue;
       }
-      Candidate one{.part = known.part,
-                    .what = topic.name + (topic.type == topic.name ? "" : " (" + topic.type + ")"),
-                    .columns = {},
-                    .frame = std::string(known.frame),
-                    .rank = known.rank +
-                            (topic.name.starts_with("/mavlink/") ? kTuning.rank_other_system : 0),
-                    .why = std::string(known.why)};
+      Candidate one{
+          .part = known.part,
+          .what = topic.name + (topic.type == topic.name ? "" : " (" + topic.type + ")"),
+          .columns = {},
+          .frame = std::string(known.frame),
+          .rank = known.rank + (is_of_other_system(topic) ? kTuning.rank_other_system : 0),
+          .why = std::string(known.why)};
       bool is_whole = true;
       for (const std::string& path : expanded(known.fields)) {
-        CandidateColumn column = column_of(topic, path);
+        CandidateColumn column =
+            path.find('/') == std::string::npos ? column_of(topic, path) : quotient_of(topic, path);
         is_whole = is_whole && column.exists();
         if (known.part != Part::commands || column.exists()) {
           one.columns.push_back(std::move(column));

@@ -220,17 +220,8 @@ constexpr std::array kFactors = std::to_array<UnitFactor>({{"deg", kRadPerDegree
                                                            {"deg/s", kRadPerDegree, "rad/s"},
                                                            {"cm/s", 0.01, "m/s"},
                                                            {"mm/s", 0.001, "m/s"},
+                                                           {"m/us", 1e6, "m/s"},
                                                            {"mV", 0.001, "V"}});
-
-// The number of an output: 3 of "SERVO_OUTPUT_RAW:servo3_raw" and of "RCOU:C3"; 0: no such column.
-std::size_t output_of(const CandidateColumn& column) {
-  const std::string kind = column.topic.substr(column.topic.rfind('/') + 1);
-  if (kind != "SERVO_OUTPUT_RAW" && kind != "RCOU") {
-    return 0;
-  }
-  const std::size_t digit = column.name.find_first_of("0123456789", column.name.rfind(':'));
-  return digit == std::string::npos ? 0 : std::strtoul(&column.name[digit], nullptr, 10);
-}
 
 class Planner {
  public:
@@ -283,7 +274,7 @@ class Planner {
   }
 
   const MotorActuator* motor_at(const CandidateColumn& column) const {
-    const auto found = std::ranges::find(motors_, output_of(column), &MotorActuator::output);
+    const auto found = std::ranges::find(motors_, output_of(column.name), &MotorActuator::output);
     return found == motors_.end() ? nullptr : &*found;
   }
 
@@ -296,7 +287,7 @@ class Planner {
         continue;
       }
       std::erase_if(one.columns, [&](const CandidateColumn& column) {
-        const std::size_t output = output_of(column);
+        const std::size_t output = output_of(column.name);
         return motors_.empty() ? output > kUsualOutputs : output > 0 && motor_at(column) == nullptr;
       });
       std::ranges::stable_sort(one.columns, {}, [&](const CandidateColumn& column) {
@@ -490,18 +481,30 @@ class Planner {
                         std::move(group));
   }
 
-  void turn_velocity(const Candidate& velocity) {
-    if (velocity.frame != "NED" && velocity.frame != "ENU") {
-      return;
-    }
-    const std::string topic = topic_of(velocity);
+  // The attitude of the world `frame`, of `topic` before all others; or null.
+  const Candidate* attitude_of(const std::string& frame, const std::string& topic) const {
     const Candidate* best = nullptr;
     for (const Candidate& one : all_) {
       const bool is_one = (one.part == Part::angles || one.part == Part::quaternion) &&
-                          one.frame == velocity.frame && one.columns.front().exists();
+                          one.frame == frame && one.columns.front().exists();
       if (is_one && (best == nullptr || (topic_of(one) == topic && topic_of(*best) != topic))) {
         best = &one;
       }
+    }
+    return best;
+  }
+
+  // A velocity of the world is turned; of a submarine roll and pitch are inputs in any case.
+  void turn_velocity(const Candidate& velocity) {
+    const bool is_of_world = velocity.frame == "NED" || velocity.frame == "ENU";
+    const bool has_restoring = is_submarine_ && velocity.frame == "FRD";
+    if (!is_of_world && !has_restoring) {
+      return;
+    }
+    const Candidate* const best =
+        attitude_of(is_of_world ? velocity.frame : "NED", topic_of(velocity));
+    if (best == nullptr && !is_of_world) {
+      return;
     }
     if (best == nullptr) {
       plan_.open.push_back(
@@ -525,6 +528,9 @@ class Planner {
     }
     plan_.states.insert(plan_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
                         std::move(group));
+    if (!is_of_world) {
+      return;
+    }
     plan_.vectors.push_back(fmt::format(
         R"({{columns = ["u", "v", "w"], from = "{}", to = "{}", attitude = ["{}"]{}}})",
         velocity.frame, velocity.frame == "NED" ? "FRD" : "FLU", join_text(names, "\", \""),

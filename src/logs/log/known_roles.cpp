@@ -18,6 +18,8 @@ constexpr const char* kTruth =
     "simulators give the truth's twist along the axes of the world, as UUV Simulator does";
 constexpr const char* kDvl = "a DVL: its own axes, and where it is mounted, aren't told";
 constexpr const char* kEkf = "the autopilot's estimate, of the world: turned by the attitude";
+constexpr const char* kDelta =
+    "ways between two measurements of a DVL or a camera over their times, axes of the body";
 constexpr const char* kBody = "axes of the body";
 constexpr const char* kRates = "rates about the axes of the body";
 constexpr const char* kAttitude = "the autopilot's attitude";
@@ -69,8 +71,10 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
     // MAVLink
     {"ODOMETRY", "", velocity, "{vx,vy,vz}", "FRD", 1, kBody},
     {"ODOMETRY", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 1, kRates},
-    {"LOCAL_POSITION_NED", "", velocity, "{vx,vy,vz}", "NED", 2, kEkf},
-    {"GLOBAL_POSITION_INT", "", velocity, "{vx,vy,vz}", "NED", 3, kEkf},
+    {"VISION_POSITION_DELTA", "", velocity, "position_delta[0..2]/time_delta_usec", "FRD", 2,
+     kDelta},
+    {"LOCAL_POSITION_NED", "", velocity, "{vx,vy,vz}", "NED", 3, kEkf},
+    {"GLOBAL_POSITION_INT", "", velocity, "{vx,vy,vz}", "NED", 4, kEkf},
     {"ATTITUDE", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 1, kRates},
     {"ATTITUDE", "", angles, "{roll,pitch,yaw}", "NED", 1, kAttitude},
     {"ATTITUDE_QUATERNION", "", rates, "{rollspeed,pitchspeed,yawspeed}", "FRD", 2, kRates},
@@ -80,9 +84,10 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
     {"MANUAL_CONTROL", "", commands, "{x,y,z,r}", "", 3, kSticks},
     {"RC_CHANNELS", "", commands, "chan{1..8}_raw", "", 4, kSticks},
     // ArduPilot's DataFlash
-    {"XKF1", "", velocity, "{VN,VE,VD}", "NED", 1, kEkf},
+    {"VISO", "", velocity, "{PosDX,PosDY,PosDZ}/dt", "FRD", 1, kDelta},
+    {"XKF1", "", velocity, "{VN,VE,VD}", "NED", 2, kEkf},
     {"XKF1", "", angles, "{Roll,Pitch,Yaw}", "NED", 1, kAttitude},
-    {"NKF1", "", velocity, "{VN,VE,VD}", "NED", 2, kEkf},
+    {"NKF1", "", velocity, "{VN,VE,VD}", "NED", 3, kEkf},
     {"NKF1", "", angles, "{Roll,Pitch,Yaw}", "NED", 2, kAttitude},
     {"ATT", "", angles, "{Roll,Pitch,Yaw}", "NED", 3, kAttitude},
     {"RATE", "", rates, "{R,P,Y}", "FRD", 1, kRates},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/log_config.hpp"
+#include "log/ardusub.hpp"
 
 #include <algorithm>
 #include <array>
@@ -86,6 +87,7 @@ class LogConfigReader {
                choice(value, {"receive", "header"}) == 0 ? bag::Clock::receive : bag::Clock::header;
          }},
         {"armed_only", [&](const TomlNode& value) { config_.armed_only = value.flag(); }},
+        {"mirror_motors", [&](const TomlNode& value) { read_mirror(value); }},
         {"messages",
          [&](const TomlNode& value) {
            config_.messages =
@@ -166,6 +168,16 @@ class LogConfigReader {
   }
 
   // phi = 0.01745, m2 = {by = -1, about = 1500}
+  // Behind [log.scale], whose mirrors would be mirrored again.
+  void read_mirror(const file::TomlNode& value) {
+    config_.mirror_motors = value.flag();
+    for (const SamplingPlan::Source& source : plan().sources) {
+      if (config_.mirror_motors && source.scale < 0.0 && output_of(source.from) > 0) {
+        value.refuse(source.name + " is mirrored by [log.scale] already; leave one of them out");
+      }
+    }
+  }
+
   void read_scales(const file::TomlNode& value) {
     for (const file::TomlNode& scale :
          value.members("a table of factors, as in {phi = 0.01745, m2 = {by = -1, about = 1500}}")) {

@@ -20,7 +20,8 @@ struct LogConfig {
   Roles roles;
   SamplingPlan plan;  ///< without rate and responses, given by the roles
   bag::Clock clock = bag::Clock::receive;
-  bool armed_only = false;  ///< leave out messages while motors are disarmed (AutopilotState)
+  bool armed_only = false;     ///< leave out messages while motors are disarmed (AutopilotState)
+  bool mirror_motors = false;  ///< outputs as the frame's table has them (pulse_factor())
   std::filesystem::path messages;         ///< folder of .msg files, or empty
   std::map<std::string, Place> places{};  ///< in the file, of each source's column
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/read_log.hpp"
+#include "log/ardusub.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -93,6 +95,25 @@ struct BagSignals {
   std::map<std::string, std::string> units;
 };
 
+// Pulses of a reversed motor, mirrored: now a pulse above the neutral one pushes as the frame's
+// table says.
+void mirror(Signal& signal, const ParameterMap& parameters, const std::string& source) {
+  const std::size_t output = output_of(signal.from);
+  if (output == 0) {
+    return;
+  }
+  const std::optional<double> factor = pulse_factor(parameters, output);
+  if (!factor) {
+    throw InputError({.file = source, .line = 0, .field = "log.mirror_motors"},
+                     "the log does not tell " + next_parameter(parameters, output) +
+                         ", so the direction of " + signal.from +
+                         " is unknown; [log.scale] takes directions by hand");
+  }
+  for (double& value : signal.values) {
+    value = kNeutralPulseUs + *factor * (value - kNeutralPulseUs);
+  }
+}
+
 BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
                           const bag::RowTimes& times) {
   std::vector<std::string> columns;
@@ -104,8 +125,10 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
                                                                        : source.definitions);
   const std::unique_ptr<bag::MessageReader> bag = source.open_bag(times);
+  ParameterMap parameters;
   const std::vector<bag::Series> all =
-      bag::read_series(*bag, definitions, columns, config.clock, config.armed_only);
+      bag::read_series(*bag, definitions, columns, config.clock, config.armed_only,
+                       config.mirror_motors ? &parameters : nullptr);
   BagSignals found;
   found.losses = bag->losses_text();
   for (const bag::Series& series : all) {
@@ -115,6 +138,9 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   for (const SamplingPlan::Source& column : config.plan.sources) {
     const bag::Series& series = bag::series_with(all, column.from);
     found.signals.push_back(signal_of(column, series, found.origin_ns));
+    if (config.mirror_motors) {
+      mirror(found.signals.back(), parameters, bag->source());
+    }
     if (std::abs(column.scale) == 1.0) {  // else the user's units say what the scale gives
       add_unit(series, column.from, column.name, found.units);
     }

@@ -3,14 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <random>
 #include <thread>
 
 #include "autopilot/rov.hpp"
 #include "autopilot/signing.hpp"
+#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/engine.hpp"
+#include "live/receiver.hpp"
 #include "mavlink/frames.hpp"
 #include "support.hpp"
 
@@ -118,6 +121,53 @@ TEST_F(Link, TheVehicleIsAskedForItsMessagesAtTheRatesWanted) {
   EXPECT_NEAR(messages.at("HEARTBEAT"), 2, 1);
   EXPECT_GE(rov_.heard["HEARTBEAT"], 1);
   EXPECT_TRUE(link_->health().faults.empty());
+}
+
+// The function of the output that [log] names, then the direction of the motor on this output.
+TEST_F(Link, TheVehicleIsAskedForTheDirectionsOfItsMotors) {
+  rov_.parameters = {{"SERVO1_FUNCTION", 35}, {"MOT_3_DIRECTION", -1}, {"FRAME_CONFIG", 1}};
+  open("", "mirror_motors = true");
+  std::map<std::string, int> messages = pass(2.0);
+  EXPECT_EQ(join_text(rov_.asked_parameters, ","), "SERVO1_FUNCTION,MOT_3_DIRECTION,FRAME_CONFIG");
+  for (const auto& [topic, count] : pass(1.0)) {
+    messages[topic] += count;
+  }
+  EXPECT_EQ(messages["PARAM_VALUE"], 3);  // recorded and heard as any message
+  EXPECT_EQ(rov_.asked_parameters.size(), 3U);
+  EXPECT_TRUE(link_->health().faults.empty());
+}
+
+TEST_F(Link, ALearnerMirrorsAReversedMotorOnceItsDirectionIsTold) {
+  const auto learned = [&](double direction) {
+    rov_ = Rov(7);
+    rov_.parameters = {{"SERVO1_FUNCTION", 35}, {"MOT_3_DIRECTION", direction}};
+    open("", "mirror_motors = true");
+    live::Receiver receiver(configuration_, std::nullopt);
+    std::vector<double> pulses;
+    for (int second = 0; second < 10; ++second) {
+      rov_.go(1.0, [&](auto bytes) { line_->add(bytes); });
+      for (bag::Message message;;) {
+        if (link_->next(message, milliseconds(2)) == Got::message) {
+          receiver.receive(link_->topics(), message);
+        } else if (line_->waiting.empty()) {
+          break;
+        }
+        while (const SampleRow* const row = receiver.next()) {
+          if (row->is_whole) {
+            pulses.push_back(row->x[1]);
+          }
+        }
+      }
+    }
+    return pulses;
+  };
+  const std::vector<double> plain = learned(1.0);
+  const std::vector<double> mirrored = learned(-1.0);
+  ASSERT_GT(plain.size(), 20U);
+  const auto [low, high] = std::ranges::minmax(plain);
+  const auto [mirrored_low, mirrored_high] = std::ranges::minmax(mirrored);
+  EXPECT_NEAR(mirrored_low, 3000.0 - high, 20.0);
+  EXPECT_NEAR(mirrored_high, 3000.0 - low, 20.0);
 }
 
 TEST_F(Link, OnlyTheVehicleIsAskedAndOthersKeepTheirNames) {

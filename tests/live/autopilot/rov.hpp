@@ -72,6 +72,14 @@ class Rov {
         }
         writer_.begin("COMMAND_ACK").set("command", 511).set("result", refuses ? 3 : 0);
         send(writer_.finish());
+      } else if (name == "PARAM_REQUEST_READ") {
+        const std::string what =
+            mavlink::text_at(*frame.definition->find("param_id"), frame.payload);
+        asked_parameters.push_back(what);
+        if (const auto found = parameters.find(what); found != parameters.end()) {
+          writer_.begin("PARAM_VALUE").set("param_id", what).set("param_value", found->second);
+          send(writer_.finish());
+        }
       }
     }
   }
@@ -88,10 +96,12 @@ class Rov {
     const auto& [definition, payload] = last.at(name);
     return mavlink::number_at(*definition->find(of), payload, index);
   }
-  std::map<std::string, double> values;  ///< the last of each NAMED_VALUE_FLOAT
-  std::string texts;                     ///< of STATUSTEXTs, a line each
-  bool all_are_signed = true;            ///< what it has heard
-  std::string refuses_message;           ///< that it won't send faster
+  std::map<std::string, double> values;         ///< the last of each NAMED_VALUE_FLOAT
+  std::string texts;                            ///< of STATUSTEXTs, a line each
+  bool all_are_signed = true;                   ///< what it has heard
+  std::map<std::string, double> parameters;     ///< that it tells when asked
+  std::vector<std::string> asked_parameters{};  ///< names, in order
+  std::string refuses_message;                  ///< that it won't send faster
 
  private:
   static constexpr double kStep = 0.005;

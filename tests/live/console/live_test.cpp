@@ -136,6 +136,28 @@ TEST_F(LiveCommand, ADriveOfArdusubEndsWithTheModelThatLearnGives) {
   }
 }
 
+// With the deltas of a velocity log, and motors mirrored as the parameters tell.
+TEST_F(LiveCommand, DeltasAndDirectionsOfArdusubAreTheSameAsInLearn) {
+  write("drive.tlog", testing::ArdusubDrive::tlog(true).text());
+  write("drive.BIN", testing::ArdusubDrive::bin(true));
+  for (const std::string name : {"drive.tlog", "drive.BIN"}) {
+    testing::succeeded(run("inspect " + name + " --template x.toml"));
+    std::string config = content("x.toml");
+    const std::string by_hand = "m2 = {by = -1, about = 1500}";
+    ASSERT_NE(config.find(by_hand), std::string::npos) << config;
+    config.replace(config.find(by_hand), by_hand.size(), "");
+    config.replace(config.find("[log]\n"), 6, "[log]\nmirror_motors = true\n");
+    write("x.toml", config);
+    testing::succeeded(
+        run("live --config x.toml --from " + name + " --speed max --fresh --out out"));
+    expect_model_of_learn("out", "auto", name);
+    const std::string mirrored = model_of("out");
+    fs::remove(folder_ / "x.toml");
+    testing::succeeded(run("live --replay " + name + " --speed max --fresh --out drafted"));
+    EXPECT_EQ(model_of("drafted"), mirrored);
+  }
+}
+
 // Its times count from where it begins, not from 1970: nothing is lost, and as much is kept.
 TEST_F(LiveCommand, ARecordingWhoseClockWentTo1970IsLearnedAsIfFromAVehicle) {
   constexpr std::int64_t kBegin = 1'700'000'000 * testing::kSecond;

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,8 +60,10 @@ class ArdusubDrive {
             -u * std::sin(theta) + z * std::cos(theta)};
   }
 
-  static Tlog tlog() {
+  /// `with_dvl`: a companion computer, system 255, sends VISION_POSITION_DELTA ten times a second.
+  static Tlog tlog(bool with_dvl = false) {
     mavlink::FrameWriter writer(1, 1);
+    mavlink::FrameWriter companion(255, 0);
     Tlog log;
     const auto add = [&](double t) {
       log.add(kTlogBeginUs + static_cast<std::uint64_t>(std::llround(1e6 * t)) + 2'000,
@@ -80,11 +84,16 @@ class ArdusubDrive {
         }
       }
       add_motion(writer, t, add, k);
+      if (with_dvl && k % 2 == 0) {
+        log.add(kTlogBeginUs + static_cast<std::uint64_t>(std::llround(1e6 * t)) + 2'000,
+                delta(companion, t));
+      }
     }
     return log;
   }
 
-  static std::string bin() {
+  /// `with_dvl`: the autopilot records the same as VISO.
+  static std::string bin(bool with_dvl = false) {
     PackedBytes log = definitions();
     for (const auto& [name, value] : parameters()) {
       log.add(head(16)).add(std::uint64_t{1'000}).add(name, 16).add(static_cast<float>(value));
@@ -95,12 +104,31 @@ class ArdusubDrive {
         log.add(head(17)).add(stamp(t)).add(std::uint8_t{t == kArmed_s});
       }
       add_records(log, t, k);
+      if (with_dvl && k % 2 == 0) {
+        log.add(head(18)).add(stamp(t)).add(static_cast<float>(kDelta_s));
+        log.add(0.0F).add(0.0F).add(0.0F);
+        for (const double velocity : velocity(t)) {
+          log.add(static_cast<float>(kDelta_s * velocity));
+        }
+        log.add(100.0F);
+      }
     }
     return log.text();
   }
 
  private:
   static constexpr double kDegrees = 57.29577951308232;
+  static constexpr double kDelta_s = 0.1;
+
+  static std::span<const std::byte> delta(mavlink::FrameWriter& companion, double t) {
+    companion.begin("VISION_POSITION_DELTA").set("time_usec", std::round(1e6 * t));
+    companion.set("time_delta_usec", std::round(1e6 * kDelta_s)).set("confidence", 100);
+    const std::array<double, 3> speed = velocity(t);
+    for (std::size_t axis = 0; axis < speed.size(); ++axis) {
+      companion.set("position_delta", kDelta_s * speed[axis], axis);
+    }
+    return companion.finish();
+  }
 
   template <typename Add>
   static void add_motion(mavlink::FrameWriter& writer, double t, const Add& add, int k) {
@@ -147,13 +175,17 @@ class ArdusubDrive {
     log.add(format(15, 15, "BAT", "Qf", "TimeUS,Volt"));
     log.add(format(16, 31, "PARM", "QNf", "TimeUS,Name,Value"));
     log.add(format(17, 12, "ARM", "QB", "TimeUS,ArmState"));
+    log.add(
+        format(18, 43, "VISO", "Qffffffff", "TimeUS,dt,AngDX,AngDY,AngDZ,PosDX,PosDY,PosDZ,conf"));
     for (const auto& [id, label] :
          {std::pair('s', "s"), std::pair('d', "deg"), std::pair('k', "deg/s"),
-          std::pair('n', "m/s"), std::pair('v', "V"), std::pair('Y', "us")}) {
+          std::pair('n', "m/s"), std::pair('v', "V"), std::pair('Y', "us"), std::pair('m', "m"),
+          std::pair('r', "rad")}) {
       log.add(head(1)).add(std::uint64_t{0}).add(id).add(label, 64);
     }
-    for (const auto& [number, units] : {std::pair(12, "sdddnnn"), std::pair(13, "skkk"),
-                                        std::pair(14, "sYYYYYYYYY"), std::pair(15, "sv")}) {
+    for (const auto& [number, units] :
+         {std::pair(12, "sdddnnn"), std::pair(13, "skkk"), std::pair(14, "sYYYYYYYYY"),
+          std::pair(15, "sv"), std::pair(18, "ssrrrmmm-")}) {
       log.add(head(3)).add(std::uint64_t{0}).add(static_cast<std::uint8_t>(number));
       log.add(units, 16).add("----------", 16);
     }

@@ -102,6 +102,83 @@ TEST_F(Ardusub, BothRecordingsGiveTheSameRows) {
   EXPECT_NEAR(column(board, "voltage")[100], 16.0 - 0.01 * 30.0, 0.01);
 }
 
+// Where a DVL's way per time is recorded, this measurement is the velocity, not the filter's.
+TEST_F(Ardusub, AVelocityLogsDeltasAreTheVelocities) {
+  testing::write_text(folder_ / "dvl.tlog", ArdusubDrive::tlog(true).text());
+  testing::write_text(folder_ / "dvl.BIN", ArdusubDrive::bin(true));
+  for (const auto& [name, from] :
+       {std::pair("dvl.tlog", "VISION_POSITION_DELTA:position_delta[1]/time_delta_usec"),
+        std::pair("dvl.BIN", "VISO:PosDY/dt")}) {
+    const log::Log log = read(name);
+    EXPECT_NE(log.draft->toml.find(from), std::string::npos) << log.draft->toml;
+    const log::Dataset data = log.dataset();
+    EXPECT_EQ(join_text(data.input_names, ","), "u,v,w,p,q,r,phi,theta,m1,m2,m3,m4,m5,m6") << name;
+    const std::vector<double>& times = column(log, "t");
+    ASSERT_GT(times.size(), 980U) << name;
+    for (std::size_t row = 10; row + 10 < times.size(); ++row) {
+      const double t = ArdusubDrive::kArmed_s + times[row];
+      const auto [u, v, w] = ArdusubDrive::velocity(t);
+      ASSERT_NEAR(column(log, "u")[row], u, 2e-3) << name << " " << t;
+      ASSERT_NEAR(column(log, "v")[row], v, 2e-3) << name << " " << t;
+      ASSERT_NEAR(column(log, "w")[row], w, 2e-3) << name << " " << t;
+      ASSERT_NEAR(column(log, "phi")[row], ArdusubDrive::angles(t)[0], 1e-3) << name << " " << t;
+    }
+  }
+}
+
+// One configuration for every vehicle: the parameters tell what is mirrored.
+TEST_F(Ardusub, MotorsAreMirroredAsTheParametersTell) {
+  const auto config = [](const std::string& topic, const std::string& more) {
+    return "[log]\nrate = 10\nclock = \"header\"\nmirror_motors = true\ninputs = [\"m1\", \"m2\", "
+           "\"lights\"]\ntargets = [\"r\"]\n[log.states]\nr = \"" +
+           std::string(topic == "RCOU:C" ? "RATE:Y" : "ATTITUDE:yawspeed") +
+           "\"\n[log.commands]\n" + "m1 = \"" + topic + "2" + (topic == "RCOU:C" ? "" : "_raw") +
+           "\"\nm2 = \"" + topic + "1" + (topic == "RCOU:C" ? "" : "_raw") + "\"\nlights = \"" +
+           topic + "9" + (topic == "RCOU:C" ? "" : "_raw") + "\"\n" + more;
+  };
+  for (const auto& [name, topic] :
+       {std::pair("drive.tlog", "SERVO_OUTPUT_RAW:servo"), std::pair("drive.BIN", "RCOU:C")}) {
+    const log::Log log = read(name, config(topic, ""));
+    const std::vector<double>& times = column(log, "t");
+    ASSERT_GT(times.size(), 1300U) << name;
+    for (std::size_t row = 300; row < 1100; ++row) {
+      const double t = times[row];
+      ASSERT_NEAR(column(log, "m1")[row], ArdusubDrive::pulse(t, 2), 1e-9) << name << " " << t;
+      ASSERT_NEAR(column(log, "m2")[row], 3000.0 - ArdusubDrive::pulse(t, 1), 1e-9) << name;
+      ASSERT_NEAR(column(log, "lights")[row], ArdusubDrive::pulse(t, 9), 1e-9) << name;
+    }
+  }
+  const std::string twice =
+      config("SERVO_OUTPUT_RAW:servo", "[log.scale]\nm2 = {by = -1, about = 1500}\n");
+  EXPECT_THROW(read("drive.tlog", twice), InputError);
+  try {
+    read("drive.tlog",
+         "[log]\nrate = 10\nmirror_motors = true\ninputs = [\"m\"]\ntargets = [\"phi\"]\n"
+         "[log.states]\nphi = \"ATTITUDE:roll\"\n[log.commands]\nm = "
+         "\"SERVO_OUTPUT_RAW:servo8_raw\"\n");
+    ADD_FAILURE() << "read without parameters";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("SERVO8_FUNCTION"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ArdusubParameters, DirectionsAreKnownOnceFunctionAndDirectionAre) {
+  log::ParameterMap told;
+  EXPECT_EQ(log::next_parameter(told, 3), "SERVO3_FUNCTION");
+  EXPECT_EQ(log::pulse_factor(told, 3), std::nullopt);
+  told["SERVO3_FUNCTION"] = 37;
+  EXPECT_EQ(log::next_parameter(told, 3), "MOT_5_DIRECTION");
+  EXPECT_EQ(log::pulse_factor(told, 3), std::nullopt);
+  told["MOT_5_DIRECTION"] = -1;
+  EXPECT_EQ(log::pulse_factor(told, 3), -1.0);
+  told["SERVO4_FUNCTION"] = 181;
+  EXPECT_EQ(log::pulse_factor(told, 4), 1.0);
+  EXPECT_EQ(log::output_of("/mavlink/1/1/SERVO_OUTPUT_RAW:servo12_raw"), 12U);
+  EXPECT_EQ(log::output_of("RCOU:C3"), 3U);
+  EXPECT_EQ(log::output_of("RCIN:C3"), 0U);
+  EXPECT_EQ(log::output_of("SERVO_OUTPUT_RAW"), 0U);
+}
+
 TEST_F(Ardusub, VoltageOfAGroundStationComesWithTheTimesOfReception) {
   std::string toml = read("drive.tlog").draft->toml;
   EXPECT_NE(toml.find("# voltage = \"SYS_STATUS:voltage_battery\""), std::string::npos) << toml;
