@@ -59,7 +59,6 @@ class LogConfigReader {
   explicit LogConfigReader(LogConfig& config) : config_(config) {}
 
   void read(const file::TomlNode& log) {
-    using file::TomlNode;
     // In the order of reading: what is derived or late has to be there already.
     const std::vector<std::pair<std::string, std::function<void(const TomlNode&)>>> readers{
         {"inputs",
@@ -121,6 +120,8 @@ class LogConfigReader {
   }
 
  private:
+  using TomlNode = file::TomlNode;
+
   Roles& roles() { return config_.roles; }
   SamplingPlan& plan() { return config_.plan; }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstddef>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -15,6 +16,7 @@
 #include "cli/output.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
+#include "file/content.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -28,6 +30,7 @@ using vehicle::Thruster;
 using vehicle::VehicleParameters;
 
 constexpr std::array<const char*, 6> kAxes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
+constexpr std::size_t kMostBytes = 1'000'000;  // of a table of thrusters
 constexpr std::array<const char*, 6> kPlaces{"x", "y", "z", "dx", "dy", "dz"};
 
 struct NewVehicleArguments {
@@ -84,7 +87,8 @@ Thruster parse_thruster(const std::string& text) {
 }
 
 std::vector<Thruster> read_thrusters(const std::string& file) {
-  const log::Table table = log::read_csv(file);
+  const log::Table table =
+      log::parse_csv(file::read_content(file, "a table of thrusters", kMostBytes), file);
   const std::size_t names = table.find("name");
   if (table.texts.size() <= names || table.texts[names].words.size() != table.rows()) {
     throw InputError({.file = file, .line = 0, .field = "name"},
