@@ -29,7 +29,8 @@ class ArdusubDrive {
     return {{"FRAME_CONFIG", 1},     {"SERVO1_FUNCTION", 34},  {"SERVO2_FUNCTION", 33},
             {"SERVO3_FUNCTION", 35}, {"SERVO4_FUNCTION", 36},  {"SERVO5_FUNCTION", 37},
             {"SERVO6_FUNCTION", 38}, {"SERVO9_FUNCTION", 181}, {"MOT_1_DIRECTION", 1},
-            {"MOT_2_DIRECTION", -1}, {"LOG_DISARMED", 1}};
+            {"MOT_2_DIRECTION", -1}, {"MOT_3_DIRECTION", 1},   {"MOT_4_DIRECTION", 1},
+            {"MOT_5_DIRECTION", 1},  {"MOT_6_DIRECTION", 1},   {"LOG_DISARMED", 1}};
   }
 
   static std::array<double, 3> velocity(double t) {
