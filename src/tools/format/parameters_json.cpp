@@ -13,7 +13,7 @@ Json interval(double low, double high) {
 }
 
 Json parameter_json(const study::Identification& found, std::size_t place) {
-  const PlanarParameter& parameter = found.fit.parameters[place];
+  const FittedParameter& parameter = found.fit.parameters[place];
   Json json{{"name", parameter.name},
             {"unit", parameter_unit(found, place)},
             {"state", state_word(parameter.state)}};
