@@ -60,6 +60,7 @@ void tell_mistakes(const std::string& source, const std::string& field,
 
 // The data of one log; `is_new`: no model wants all its inputs.
 log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new) {
+  opened.roles.also = options.log.also;
   if (is_new) {
     warn("{}", log::left_out_text(opened.table, opened.roles));
     opened.roles = log::without_constants(opened.table, std::move(opened.roles));
@@ -143,6 +144,7 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   if (!ignored.empty()) {
     roles.ignored = ignored;
   }
+  roles.also = also;
   add_units(units, roles.units);
   return roles;
 }

@@ -38,7 +38,7 @@ std::string scale_text(const study::Identification& found) {
 }
 
 std::string parameter_line(const study::Identification& found, std::size_t place) {
-  const FittedParameter& parameter = found.fit.parameters[place];
+  const FittedParameter& parameter = found.fit().parameters[place];
   const std::string head =
       fmt::format("  {}: {{unit: {}, state: {}", quoted(parameter.name),
                   quoted(parameter_unit(found, place)), quoted(state_word(parameter.state)));
@@ -66,9 +66,9 @@ std::string actuators(const study::Identification& found) {
 std::string correlations(const study::Identification& found) {
   std::vector<std::size_t> told;
   std::string names;
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
-    if (found.fit.parameters[i].state == ParameterState::identified) {
-      names += (told.empty() ? "" : ", ") + quoted(found.fit.parameters[i].name);
+  for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
+    if (found.fit().parameters[i].state == ParameterState::identified) {
+      names += (told.empty() ? "" : ", ") + quoted(found.fit().parameters[i].name);
       told.push_back(i);
     }
   }
@@ -76,11 +76,46 @@ std::string correlations(const study::Identification& found) {
   for (const std::size_t a : told) {
     text += "    - [";
     for (const std::size_t b : told) {
-      text += (b == told.front() ? "" : ", ") + number("{:.3f}", found.fit.correlation(a, b));
+      text += (b == told.front() ? "" : ", ") + number("{:.3f}", found.fit().correlation(a, b));
     }
     text += "]\n";
   }
   return text;
+}
+
+// Of SixAxisPlace; thrusts are those at full command.
+std::string six_axis_unit(const study::Identification& found, std::size_t place) {
+  constexpr std::array kUnits{"kg",
+                              "kg",
+                              "kg",
+                              "kg m^2",
+                              "kg m^2",
+                              "kg m^2",
+                              "kg m",
+                              "kg m",
+                              "N s/m",
+                              "N s/m",
+                              "N s/m",
+                              "N m s/rad",
+                              "N m s/rad",
+                              "N m s/rad",
+                              "N s^2/m^2",
+                              "N s^2/m^2",
+                              "N s^2/m^2",
+                              "N m s^2/rad^2",
+                              "N m s^2/rad^2",
+                              "N m s^2/rad^2",
+                              "N",
+                              "N m",
+                              "N m",
+                              "N m"};
+  constexpr std::array kCurve{"s", "s", "1", "1"};
+  const std::size_t curve = SixAxisPlace::curve(found.six->thrusters.size());
+  if (place >= curve) {
+    return kCurve.at(place - curve);
+  }
+  const std::string unit = place < kUnits.size() ? kUnits[place] : "N";
+  return found.scale != study::ScaleSource::none ? unit : "(" + unit + ")/kg";
 }
 
 }  // namespace
@@ -99,6 +134,9 @@ double half_width90(const FittedParameter& parameter) {
 }
 
 std::string parameter_unit(const study::Identification& found, std::size_t place) {
+  if (found.six) {
+    return six_axis_unit(found, place);
+  }
   constexpr std::array<const char*, PlanarPlace::thrusters> kUnits{
       "kg",        "kg",        "kg m",          "kg m^2", "N s/m", "N s/m", "N m s/rad",
       "N s^2/m^2", "N s^2/m^2", "N m s^2/rad^2", "N",      "N",     "N m"};
@@ -120,22 +158,23 @@ std::string parameter_unit(const study::Identification& found, std::size_t place
   }
   const std::string& unit = found.speed_units[index];
   return fmt::format("{}/({})^2", scaled ? "N" : "m/s^2",
-                     unit.empty() ? found.fit.vehicle().thrusters[index].name : unit);
+                     unit.empty() ? found.planar.vehicle().thrusters[index].name : unit);
 }
 
 std::string parameters_yaml(const study::Identification& found, Frame frame) {
   std::string text = fmt::format(
-      "# Parameters of Fossen's equation in the plane, by `kelpie identify`: docs/identify.md\n"
+      "# Parameters of Fossen's equation {}, by `kelpie identify`: docs/identify.md\n"
       "format: kelpie-parameters\nversion: 1\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
       "scale: {}\nmisfit: {}\n",
-      quoted(found.source), frame == Frame::flu ? "FLU" : "FRD", found.training_rows,
-      quoted(found.split), quoted(scale_text(found)), number("{:.3g}", found.fit.misfit));
+      found.six ? "on six axes" : "in the plane", quoted(found.source),
+      found.six || frame == Frame::frd ? "FRD" : "FLU", found.training_rows, quoted(found.split),
+      quoted(scale_text(found)), number("{:.3g}", found.fit().misfit));
   if (found.mass_kg) {
     text += fmt::format("mass_kg: {:.6g}\n", *found.mass_kg);
   }
   if (!found.held_out.times_s.empty()) {
     text += "held_out_r2:\n";
-    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    for (std::size_t axis = 0; axis < found.targets.size(); ++axis) {
       text += fmt::format("  {}: {{vehicle: {}, same_terms_untied: {}}}\n",
                           quoted(found.targets[axis]), number("{:.4f}", found.held_out.r2[axis]),
                           number("{:.4f}", found.held_out.free_r2[axis]));
@@ -143,7 +182,7 @@ std::string parameters_yaml(const study::Identification& found, Frame frame) {
   }
   text += actuators(found);
   text += "parameters:\n";
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+  for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
     text += parameter_line(found, i);
   }
   return text + correlations(found);

@@ -176,13 +176,15 @@ Fields thruster_fields(const IdentifiedVehicle& vehicle, const IdentifiedThruste
   add(fields, "place_flu", numbers(mirrored(thruster.position_m)));
   add(fields, "turn", turn_of(thruster.direction));
   add(fields, "turn_flu", turn_of(mirrored(thruster.direction)));
-  add(fields, "forward", thruster.forward * kPerRadians);
-  add(fields, "reverse", thruster.reverse * kPerRadians);
-  add(fields, "greatest", greatest * kTurn);
+  const double per_square = vehicle.speeds ? kPerRadians : 1.0;
+  add(fields, "forward", thruster.forward * per_square);
+  add(fields, "reverse", thruster.reverse * per_square);
+  add(fields, "greatest", vehicle.speeds ? greatest * kTurn : greatest);
+  add(fields, "per", vehicle.speeds ? "N/(rad/s)^2" : "N at full command");
   add(fields, "most_thrust", thruster.forward * greatest * greatest);
   add(fields, "least_thrust", -thruster.reverse * greatest * greatest);
   add(fields, "coefficient",
-      thruster.forward * kPerRadians /
+      thruster.forward * per_square /
           (kFreshWater * kPropellerDiameter * kPropellerDiameter * kPropellerDiameter *
            kPropellerDiameter));
   add(fields, "was", told ? "identified" : "taken as forwards, it never ran so");

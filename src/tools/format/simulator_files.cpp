@@ -104,7 +104,7 @@ constexpr const char* kGazeboThruster = R"(    <link name="{name}_propeller">
         <limit><lower>-1e16</lower><upper>1e16</upper></limit>
       </axis>
     </joint>
-    <!-- in reverse {reverse} N/(rad/s)^2 was {was}, forwards {forward}: this plugin has one coefficient; the limits of the thrust are those of the log -->
+    <!-- in reverse {reverse} {per} was {was}, forwards {forward}: this plugin has one coefficient both ways, so command thrusts in N; the limits of the thrust are those of the log -->
     <plugin filename="gz-sim-thruster-system" name="gz::sim::systems::Thruster">
       <joint_name>{name}_joint</joint_name>
       <fluid_density>1000</fluid_density>
@@ -172,7 +172,7 @@ constexpr const char* kUuv =
   <xacro:property name="identified_thrusters">
 )";
 
-constexpr const char* kUuvThruster = R"(    <!-- {name_comment}: N/(rad/s)^2, {both} -->
+constexpr const char* kUuvThruster = R"(    <!-- {name_comment}: {per}, {both} -->
     <thruster name="{name}">
       <origin xyz="{place_flu}" rpy="{turn_flu}"/>
       <dynamics>{rotor_uuv}</dynamics>
@@ -204,40 +204,75 @@ std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& s
   return xml_file(vehicle, source, kStonefish, kStonefishThruster, "</robot>\n");
 }
 
+namespace {
+
+std::string toml_list(const Eigen::VectorXd& values) {
+  return "[" + numbers(values, ", ") + "]";
+}
+
+template <typename Matrix>
+std::string toml_table(const Matrix& matrix) {
+  return "[\n" + rows(matrix, "  [", ", ", "],\n") + "]";
+}
+
+std::string thruster_toml(const vehicle::Thruster& thruster, bool speeds) {
+  return fmt::format(
+      "[thrusters.{}]\nforward = {:.6g}\nreverse = {:.6g}\nposition_m = {}\n"
+      "direction = [{:.17g}, {:.17g}, {:.17g}]\n{}{}\n",
+      thruster.name, thruster.forward, thruster.reverse, toml_list(thruster.position_m),
+      thruster.direction(0), thruster.direction(1), thruster.direction(2),
+      speeds ? fmt::format("max_speed_rps = {:.6g}\n", thruster.max_speed_rps) : "",
+      thruster.dead_band > 0.0 ? fmt::format("dead_band = {:.6g}\n", thruster.dead_band) : "");
+}
+
+std::string battery_toml(const vehicle::BatteryParameters& battery) {
+  return battery.nominal_v == 0.0
+             ? ""
+             : fmt::format(
+                   "[battery]\nnominal_v = {:.6g}\nfull_v = {:.6g}\nempty_v = {:.6g}\n"
+                   "resistance_ohm = {:.6g}\ncapacity_ah = {:.6g}\nthruster_w = {:.6g}\n"
+                   "idle_w = {:.6g}\nexponent = {:.6g}\n\n",
+                   battery.nominal_v, battery.full_v, battery.empty_v, battery.resistance_ohm,
+                   battery.capacity_ah, battery.thruster_w, battery.idle_w, battery.exponent);
+}
+
+}  // namespace
+
 std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& source) {
   const vehicle::VehicleParameters& body = vehicle.body;
-  const auto list = [](const auto& values) { return "[" + numbers(values, ", ") + "]"; };
-  const auto table = [](const auto& matrix) {
-    return "[\n" + rows(matrix, "  [", ", ", "],\n") + "]";
-  };
+  const bool planar = !vehicle.identified[2];
   std::string text = fmt::format(
-      "# Identified by `kelpie identify` from {}.\n"
-      "# Surge, sway, yaw and the lateral thrusters are identified; {}.\n"
-      "# Speeds of thrusters in rev/s, {}. Constant forces ({:.3g} N, {:.3g} N, {:.3g} N m) aren't "
-      "part of a vehicle file.\n\n",
-      without_controls(source), without_controls(vehicle.rest), vehicle.speed_unit,
-      vehicle.constant_force(0), vehicle.constant_force(1), vehicle.constant_force(5));
+      "# Identified by `kelpie identify` from {}.\n# {} identified; {}.\n"
+      "# Thrusters {}.{}\n\n",
+      without_controls(source),
+      planar ? "Surge, sway, yaw and the lateral thrusters are" : "Six axes and thrusters are",
+      without_controls(vehicle.rest), vehicle.speed_unit,
+      planar ? fmt::format(" Constant forces ({:.3g} N, {:.3g} N, {:.3g} N m) aren't part of a "
+                           "vehicle file.",
+                           vehicle.constant_force(0), vehicle.constant_force(1),
+                           vehicle.constant_force(5))
+             : "");
   text += fmt::format(
       "[body]\nmass_kg = {:.6g}\ninertia_kg_m2 = {}\ncentre_of_gravity_m = {}\n"
       "centre_of_buoyancy_m = {}\nnet_buoyancy_n = {:.6g}\n\n"
-      "[hydrodynamics]\nadded_mass = {}\nlinear_damping = {}\nquadratic_damping = {}\n\n"
-      "[rotors]\nlag_s = {:.6g}  # commands are speeds here\n\n",
-      body.mass_kg, table(body.inertia_kg_m2), list(body.centre_of_gravity_m),
-      list(body.centre_of_buoyancy_m), body.net_buoyancy_n, table(body.added_mass),
-      list(body.linear_damping), list(body.quadratic_damping), body.rotor_lag_s);
+      "[hydrodynamics]\nadded_mass = {}\nlinear_damping = {}\nquadratic_damping = {}\n\n",
+      body.mass_kg, toml_table(body.inertia_kg_m2), toml_list(body.centre_of_gravity_m),
+      toml_list(body.centre_of_buoyancy_m), body.net_buoyancy_n, toml_table(body.added_mass),
+      toml_list(body.linear_damping), toml_list(body.quadratic_damping));
+  text += fmt::format(
+      "[rotors]\ncommand = \"{}\"\nlag_s = {:.6g}\n{}\n",
+      vehicle::command_unit_name(body.command_unit), body.rotor_lag_s,
+      body.rotor_delay_s > 0.0 ? fmt::format("delay_s = {:.6g}\n", body.rotor_delay_s) : "");
   for (const vehicle::Thruster& thruster : body.thrusters) {
-    text += fmt::format(
-        "[thrusters.{}]\nforward = {:.6g}\nreverse = {:.6g}\nposition_m = {}\n"
-        "direction = [{:.17g}, {:.17g}, {:.17g}]\nmax_speed_rps = {:.6g}\n\n",
-        thruster.name, thruster.forward, thruster.reverse, list(thruster.position_m),
-        thruster.direction(0), thruster.direction(1), thruster.direction(2),
-        thruster.max_speed_rps);
+    text += thruster_toml(thruster, vehicle.speeds);
   }
+  text += battery_toml(body.battery);
+  const vehicle::HoldGains& hold = body.hold;
   return text + fmt::format(
                     "[hold]\ndepth_p = {:.6g}\ndepth_i = {:.6g}\ndepth_d = {:.6g}\n"
-                    "pitch_p = {:.6g}\npitch_d = {:.6g}\n",
-                    body.hold.depth_p, body.hold.depth_i, body.hold.depth_d, body.hold.pitch_p,
-                    body.hold.pitch_d);
+                    "pitch_p = {:.6g}\npitch_d = {:.6g}\nroll_p = {:.6g}\nroll_d = {:.6g}\n",
+                    hold.depth_p, hold.depth_i, hold.depth_d, hold.pitch_p, hold.pitch_d,
+                    hold.roll_p, hold.roll_d);
 }
 
 }  // namespace kelpie::format
