@@ -207,12 +207,12 @@ std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& s
 namespace {
 
 std::string toml_list(const Eigen::VectorXd& values) {
-  return "[" + numbers(values, ", ") + "]";
+  return "[" + numbers_text(values, ", ") + "]";
 }
 
 template <typename Matrix>
 std::string toml_table(const Matrix& matrix) {
-  return "[\n" + rows(matrix, "  [", ", ", "],\n") + "]";
+  return "[\n" + rows_text(matrix, "  [", ", ", "],\n") + "]";
 }
 
 std::string thruster_toml(const vehicle::Thruster& thruster, bool speeds) {
