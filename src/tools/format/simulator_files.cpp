@@ -147,7 +147,7 @@ constexpr const char* kStonefishThruster = R"(  <actuator name="{name}" type="th
 constexpr const char* kUuv =
     R"(<!-- UUV Simulator and Plankton. Positions FLU (Gazebo); added mass and drag in FRD, to which the plugin turns velocities. -->
 <!-- Added mass positive (kg, kg m, kg m^2), drag negative (N s/m, N s^2/m^2, …). The added mass pushes back with a filtered -->
-<!-- acceleration of past steps, which is unstable above 5.6 times the mass: see the certificate. -->
+<!-- acceleration of past steps, which is unstable above 5.7 times the mass: see the certificate. -->
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="identified_hydro_model" params="namespace">
     <link name="${{namespace}}/base_link">
