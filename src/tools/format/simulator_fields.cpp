@@ -203,6 +203,29 @@ Fields thruster_fields(const IdentifiedVehicle& vehicle, const IdentifiedThruste
   return fields;
 }
 
+namespace {
+
+// Matrices and lists of programs and YAML.
+void add_lists(const IdentifiedVehicle& vehicle, Fields& fields) {
+  const vehicle::VehicleParameters& body = vehicle.body;
+  add(fields, "inertia_m", rows_text(body.inertia_kg_m2, "  ", " ", ";\n"));
+  add(fields, "inertia_py", rows_text(body.inertia_kg_m2, "    [", ", ", "],\n"));
+  add(fields, "inertia_list", numbers_text(body.inertia_kg_m2.diagonal(), ", "));
+  add(fields, "gravity_list", numbers_text(body.centre_of_gravity_m, ", "));
+  add(fields, "buoyancy", numbers_text(body.centre_of_buoyancy_m));
+  add(fields, "buoyancy_list", numbers_text(body.centre_of_buoyancy_m, ", "));
+  add(fields, "weight", body.mass_kg * vehicle::kGravity);
+  add(fields, "buoyant_force", body.mass_kg * vehicle::kGravity + body.net_buoyancy_n);
+  add(fields, "net_buoyancy", body.net_buoyancy_n);
+  add(fields, "thruster_count", std::to_string(vehicle.thrusters.size()));
+  const Eigen::MatrixXd arms = thruster_matrix(vehicle);
+  add(fields, "arms_m", rows_text(arms, "  ", " ", ";\n"));
+  add(fields, "arms_py", rows_text(arms, "    [", ", ", "],\n"));
+  add(fields, "arms_list", rows_text(arms, "           ", ", ", ",\n"));
+}
+
+}  // namespace
+
 Fields vehicle_fields(const IdentifiedVehicle& vehicle, const std::string& source) {
   const vehicle::VehicleParameters& body = vehicle.body;
   const vehicle::Vector6& linear = body.linear_damping;
@@ -247,20 +270,7 @@ Fields vehicle_fields(const IdentifiedVehicle& vehicle, const std::string& sourc
   add(fields, "quadratic_list", numbers_text(quadratic, ", "));
   add(fields, "minus_linear_list", numbers_text((-linear).eval(), ", "));
   add(fields, "minus_quadratic_list", numbers_text((-quadratic).eval(), ", "));
-  add(fields, "inertia_m", rows_text(body.inertia_kg_m2, "  ", " ", ";\n"));
-  add(fields, "inertia_py", rows_text(body.inertia_kg_m2, "    [", ", ", "],\n"));
-  add(fields, "inertia_list", numbers_text(body.inertia_kg_m2.diagonal(), ", "));
-  add(fields, "gravity_list", numbers_text(body.centre_of_gravity_m, ", "));
-  add(fields, "buoyancy", numbers_text(body.centre_of_buoyancy_m));
-  add(fields, "buoyancy_list", numbers_text(body.centre_of_buoyancy_m, ", "));
-  add(fields, "weight", body.mass_kg * vehicle::kGravity);
-  add(fields, "buoyant_force", body.mass_kg * vehicle::kGravity + body.net_buoyancy_n);
-  add(fields, "net_buoyancy", body.net_buoyancy_n);
-  add(fields, "thruster_count", std::to_string(vehicle.thrusters.size()));
-  const Eigen::MatrixXd arms = thruster_matrix(vehicle);
-  add(fields, "arms_m", rows_text(arms, "  ", " ", ";\n"));
-  add(fields, "arms_py", rows_text(arms, "    [", ", ", "],\n"));
-  add(fields, "arms_list", rows_text(arms, "           ", ", ", ",\n"));
+  add_lists(vehicle, fields);
   add_orca(vehicle, fields);
   add(fields, "minus_linear", numbers_text((-linear).eval()));
   add(fields, "minus_quadratic", numbers_text((-quadratic).eval()));
