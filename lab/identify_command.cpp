@@ -12,6 +12,7 @@
 #include "cli/output.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "lab/commands.hpp"
+#include "study/six_axes.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/parameters.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -24,8 +25,11 @@ constexpr double kNormal90 = 1.645;
 constexpr double kRounding = 1e-9;
 constexpr std::array<Eigen::Index, kPlanarAxes> kOfSix{0, 1, 5};
 
-// In FLU, as the log is.
+// As the log is: in the plane FLU, on six axes FRD.
 std::vector<double> truth_of(const vehicle::Scenario& scenario) {
+  if (scenario.log == vehicle::LogKind::six_axes) {
+    return study::six_axis_truth(scenario.vehicle);
+  }
   const vehicle::Plant plant =
       vehicle::make_plant(scenario.vehicle, scenario.configurations.front());
   std::vector<double> truth{plant.mass(0, 0), plant.mass(1, 1), plant.mass(1, 5), plant.mass(5, 5)};
@@ -46,7 +50,18 @@ std::vector<double> truth_of(const vehicle::Scenario& scenario) {
   return truth;
 }
 
-PlanarFit identify_seed(const vehicle::Scenario& scenario) {
+// The scale is the true surge inertia.
+ParameterFit identify_six_axes_seed(const vehicle::Scenario& scenario) {
+  return scaled_by_inertia(
+      fit_six_axes(study::six_axis_rows(vehicle::simulate_six_axes(scenario), scenario.vehicle)),
+      study::six_axis_truth(scenario.vehicle).front(), 0.0);
+}
+
+// The scale is the left thruster's true forward coefficient.
+ParameterFit identify_seed(const vehicle::Scenario& scenario) {
+  if (scenario.log == vehicle::LogKind::six_axes) {
+    return identify_six_axes_seed(scenario);
+  }
   PlanarRows rows;
   rows.thrusters = {"th1", "th2", "th3"};
   for (const vehicle::LogRow& row : vehicle::simulate(scenario)) {
@@ -82,7 +97,7 @@ struct IdentifyStudyArguments {
   std::size_t seeds = 20;
 };
 
-// Simulates and identifies all rows; the scale from the left thruster's true forward coefficient.
+// Simulates and identifies all rows.
 IdentifyStudy study_identification(const vehicle::Scenario& first, std::size_t seeds,
                                    const std::function<bool(double)>& keep_going) {
   const std::vector<double> truth = truth_of(first);
@@ -92,7 +107,7 @@ IdentifyStudy study_identification(const vehicle::Scenario& first, std::size_t s
   for (std::size_t i = 0; i < seeds; ++i) {
     vehicle::Scenario scenario = first;
     scenario.seed = first.seed + i;
-    const PlanarFit fit = identify_seed(scenario);
+    const ParameterFit fit = identify_seed(scenario);
     study.parameters.resize(fit.parameters.size());
     std::size_t inside = 0;
     std::size_t judged = 0;

@@ -42,8 +42,7 @@ struct ParameterFit {
 /// Scales masses, drags and forces so that the named thrusters have the given forward coefficients
 /// ("NAME.forward"), without error; for several thrusters in the geometric mean. Throws InputError
 /// on an unknown or undetermined thruster and on a coefficient <= 0.
-void scale_by_thrust(ParameterFit& fit,
-                     const std::vector<std::pair<std::string, double>>& forward);
+void scale_by_thrust(ParameterFit& fit, const std::vector<std::pair<std::string, double>>& forward);
 
 /// Scales masses, drags and forces so that the surge inertia, the first parameter, is `kilograms`,
 /// with a standard error of `error`. Requires kilograms > 0.

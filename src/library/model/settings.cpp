@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::string_view, 2> kLearners{"committee", "svr"};
 constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
 constexpr std::array<std::string_view, 3> kPresets{"default", "small", "paper"};
-constexpr std::size_t kPlanarAxes = 3;  // surge, sway, yaw
+constexpr std::size_t kPlaneAxes = 3;  // surge, sway, yaw
 
 constexpr std::string_view kScale = "Scale";
 constexpr std::string_view kGivenScale = "a given scale";  // no setting: the caller gives it
@@ -92,10 +92,10 @@ ModelSettings small_preset(std::size_t axes) {
 // Table I of the paper. Its γ can't be meant as eq. (6) has it: read as a reciprocal it works, see
 // docs/method.md.
 ModelSettings paper_preset(std::size_t axes) {
-  constexpr std::array<double, kPlanarAxes> kEpsilon{0.1, 0.001, 0.1};
-  constexpr std::array<double, kPlanarAxes> kGamma{1.0 / 100.0, 1.0 / 40.0, 1.0 / 20.0};
-  constexpr std::array<double, kPlanarAxes> kK{10.0, 10.0, 1.0};
-  if (axes > kPlanarAxes) {
+  constexpr std::array<double, kPlaneAxes> kEpsilon{0.1, 0.001, 0.1};
+  constexpr std::array<double, kPlaneAxes> kGamma{1.0 / 100.0, 1.0 / 40.0, 1.0 / 20.0};
+  constexpr std::array<double, kPlaneAxes> kK{10.0, 10.0, 1.0};
+  if (axes > kPlaneAxes) {
     throw InputError("preset", "'paper' has values for surge, sway and yaw; there are " +
                                    std::to_string(axes) + " targets");
   }
@@ -277,7 +277,7 @@ std::vector<SettingText> setting_docs() {
         {std::string(field.name), meaning, field.allowed(), std::string(field.group), {}});
   });
   for (const std::string_view preset : kPresets) {
-    const auto values = ModelSettings::from_preset(preset, kPlanarAxes).values();
+    const auto values = ModelSettings::from_preset(preset, kPlaneAxes).values();
     for (std::size_t i = 0; i < docs.size(); ++i) {
       docs[i].presets.push_back(values[i].second);
     }

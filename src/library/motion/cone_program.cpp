@@ -82,10 +82,10 @@ ConeSolution solve(const ConeProgram& program) {
   for (const Eigen::Index i : program.signs) {
     solution.at_bound[static_cast<std::size_t>(i)] = z(i) == 0.0;
   }
-  solution.block_at_bound = program.block &&
-                            Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block_of(program, z))
-                                .eigenvalues()
-                                .minCoeff() <= program.least * (1.0 + 1e-6);
+  solution.block_at_bound =
+      program.block && Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(block_of(program, z))
+                               .eigenvalues()
+                               .minCoeff() <= program.least * (1.0 + 1e-6);
   return solution;
 }
 

@@ -74,8 +74,7 @@ FreeFit without_thrusters(const FreeFit& fit) {
 MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& structure,
                                   MinimumDistance start) {
   MinimumDistance best = std::move(start);
-  ConeProgram program{.signs = places_in(best.free, structure.positive),
-                      .least = structure.least};
+  ConeProgram program{.signs = places_in(best.free, structure.positive), .least = structure.least};
   if (structure.block) {
     const std::vector<Eigen::Index> block = places_in(best.free, *structure.block);
     program.block = {block[0], block[1], block[2]};
@@ -113,7 +112,10 @@ SandwichErrors sandwich(const FreeFit& fit, const EquationStructure& structure,
       structure.residual(fit.coefficients, best.parameters).jacobian(Eigen::all, best.free);
   const Eigen::Index terms = fit.gram.rows();
   const Eigen::Index axes = mass.rows();
-  const Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
+  Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
+  for (Eigen::Index term = 0; term < terms; ++term) {
+    inverse(term, term) *= fit.gram(term, term) > 0.0 ? 1.0 : 0.0;  // what never was has no score
+  }
   Eigen::MatrixXd from_scores(axes * terms, axes * terms);  // scores to M ΔBᵀ
   for (Eigen::Index a = 0; a < terms; ++a) {
     for (Eigen::Index b = 0; b < terms; ++b) {

@@ -317,6 +317,20 @@ MotionTerms MotionTerms::planar(std::size_t thrusters) {
   return terms;
 }
 
+MotionTerms MotionTerms::spatial(std::size_t thrusters) {
+  constexpr std::size_t kVelocities = 6;
+  constexpr std::size_t kComponents = 3;
+  MotionTerms terms(kVelocities + kComponents + thrusters, first_places(kVelocities));
+  terms.add_each(terms.velocities_, {TermForm::linear});
+  terms.add_each(terms.velocities_, {TermForm::square_law});
+  terms.add_products(terms.velocities_);
+  terms.add_each(terms.velocities_, {TermForm::square});
+  const std::span<const std::size_t> others(terms.commands_);
+  terms.add_each(others.first(kComponents), {TermForm::linear});
+  terms.add_each(others.subspan(kComponents), {TermForm::ahead, TermForm::astern});
+  return terms;
+}
+
 MotionTerms MotionTerms::alignment(std::size_t inputs, std::span<const std::size_t> velocities) {
   MotionTerms terms(inputs, velocities);
   terms.add_each(velocities, {TermForm::linear, TermForm::square_law});

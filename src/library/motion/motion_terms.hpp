@@ -97,6 +97,10 @@ class MotionTerms {
   /// In the plane, the first inputs u, v, r: u, v, r, u|u|, v|v|, r|r|, vr, ur, r², uv, 1, then
   /// max(n, 0)² and −min(n, 0)² of every n.
   static MotionTerms planar(std::size_t thrusters);
+  /// On six axes, the inputs u, v, w, p, q, r, three components of the direction of gravity, and
+  /// thruster speeds n: v, v|v|, products and squares of velocities, the components, then
+  /// max(n, 0)² and −min(n, 0)² of every n.
+  static MotionTerms spatial(std::size_t thrusters);
   /// For the alignment of commands: v, v|v|, products v w, drag v|w|, n, n|n|, n of the first
   /// velocity (inflow), n|m| of up to three commands (a rudder behind a rotor), 1.
   static MotionTerms alignment(std::size_t inputs, std::span<const std::size_t> velocities);

@@ -193,8 +193,8 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
             ? ParameterState::not_told
         : best.at_bound[i] ? ParameterState::at_bound
                            : ParameterState::identified;
-    const bool scales = i < PlanarPlace::thrusters ||
-                        (i - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
+    const bool scales =
+        i < PlanarPlace::thrusters || (i - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
     fit.parameters.push_back({names[i], value, error, state, scales});
   }
   require_excitation(fit, best);

@@ -31,7 +31,7 @@ std::size_t find_forward(const ParameterFit& fit, const std::string& thruster) {
 }
 
 // θ → s(θ) θ: `slope` holds d ln s / dθ, `extra` the relative variance of s that has other causes.
-void scale(ParameterFit& fit, double factor, const Eigen::VectorXd& slope, double extra) {
+void apply_scale(ParameterFit& fit, double factor, const Eigen::VectorXd& slope, double extra) {
   const auto n = static_cast<Eigen::Index>(fit.parameters.size());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(n, n);
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(n);  // the values, where they have a scale
@@ -44,9 +44,8 @@ void scale(ParameterFit& fit, double factor, const Eigen::VectorXd& slope, doubl
     }
   }
   jacobian += moved * slope.transpose();
-  const Eigen::MatrixXd covariance =
-      jacobian * as_matrix(fit.covariance) * jacobian.transpose() +
-      extra * moved * moved.transpose();
+  const Eigen::MatrixXd covariance = jacobian * as_matrix(fit.covariance) * jacobian.transpose() +
+                                     extra * moved * moved.transpose();
   as_matrix(fit.covariance) = covariance;
   for (Eigen::Index i = 0; i < n; ++i) {
     fit.parameters[static_cast<std::size_t>(i)].error = std::sqrt(std::max(0.0, covariance(i, i)));
@@ -110,7 +109,7 @@ void scale_by_thrust(ParameterFit& fit,
     slope(static_cast<Eigen::Index>(at)) -= share / found.value;
     places.push_back(at);
   }
-  scale(fit, std::exp(log_factor), slope, 0.0);
+  apply_scale(fit, std::exp(log_factor), slope, 0.0);
   fit.parameters.front().state = ParameterState::identified;
   if (places.size() == 1) {
     fit.parameters[places.front()].state = ParameterState::known;
@@ -118,8 +117,9 @@ void scale_by_thrust(ParameterFit& fit,
 }
 
 void scale_by_inertia(ParameterFit& fit, double kilograms, double error) {
-  scale(fit, kilograms, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.parameters.size())),
-        std::pow(error / kilograms, 2.0));
+  apply_scale(fit, kilograms,
+              Eigen::VectorXd::Zero(static_cast<Eigen::Index>(fit.parameters.size())),
+              std::pow(error / kilograms, 2.0));
 }
 
 }  // namespace kelpie

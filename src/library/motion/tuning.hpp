@@ -85,6 +85,19 @@ inline constexpr struct IdentificationTuning {
   double plane_allowance = 0.003;
   double angle_allowance_rad = 0.001;
   double most_blur = 0.3;  ///< error of a parameter's effect over the forces of its axis
+
+  // Six axes (docs/identify.md, "Six axes").
+  std::array<double, 5> half_windows_s{0.5, 0.25, 1.0, 2.0, 4.0};  ///< [s] tried
+  double stride_share = 0.4;  ///< [half a window] between windows
+  long pieces = 24;           ///< of the log, whose scores count as independent
+  double student90 = 1.714;  ///< quantile 0.95 of Student's t with pieces − 1 degrees of freedom,
+  double normal90 = 1.645;   ///< and of the normal distribution
+  double sensor_scale = 0.002;       ///< [share] of a value: data sheets of DVLs, 0.2 %
+  double velocity_bias_m_s = 0.001;  ///< [m/s] data sheets of DVLs, ±1 mm/s
+  double attitude_bias_rad = 0.001;  ///< [rad] of roll and pitch, by hand
+  int curve_steps = 8;               ///< Gauss-Newton steps of the thrust curve, at most
+  double least_curve_step = 0.01;    ///< [largest step] a smaller one ends the search
+  double least_volts_ratio = 1.02;   ///< of the highest to the lowest supply, to tell an exponent
 } kIdentification;
 
 }  // namespace kelpie

@@ -27,8 +27,8 @@ struct Window {
   std::vector<double> slope{};  // of the velocity: 0 for a constant, 1 for time
 };
 
-Window window_at(std::span<const double> times, std::size_t begin, std::size_t end,
-                 double centre_s, double half_s) {
+Window window_at(std::span<const double> times, std::size_t begin, std::size_t end, double centre_s,
+                 double half_s) {
   Window window;
   while (times[begin] <= centre_s - half_s) {
     ++begin;

@@ -128,6 +128,7 @@ struct Roles {
   double rate_hz = 0.0;         ///< rows per second without time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
   std::string held_out{};       ///< name of a column of 0 and 1 (held out for validation), or empty
+  std::vector<std::string> also{};     ///< columns that are inputs, whatever a guess says
   std::vector<std::string> ignored{};  ///< columns that no guess takes for inputs or targets
   /// Units of columns, in the syntax of Unit::parse. Readers convert columns to the SI
   /// (Unit::in_si) and then tell the units of the converted columns.

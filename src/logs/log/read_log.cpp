@@ -193,6 +193,7 @@ bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) 
   try {
     Roles all = roles;
     all.ignored.clear();  // whoever uses the table refuses a name that is no column
+    all.also.clear();
     guess_roles(table, all);
     return true;
   } catch (const InputError& error) {

@@ -131,6 +131,9 @@ std::string reason_against(const Table& table, std::size_t column, const Roles& 
   if (is_among(name, roles.ignored)) {
     return "ignored, as asked";
   }
+  if (is_among(name, roles.also)) {
+    return "";
+  }
   const std::span<const double> values = values_of(table, column);
   if (table.is_of_words(column)) {
     return fmt::format("'{}' is not a number", table.texts[column].cell);
@@ -245,6 +248,12 @@ Roles guess_roles(const Table& table, const Roles& given) {
   }
   if (given.inputs.empty()) {
     put_velocities_first(roles.inputs);
+  }
+  for (const std::string& name : given.also) {
+    table.find(name);
+    if (!is_among(name, roles.inputs)) {
+      roles.inputs.push_back(name);
+    }
   }
   return roles;
 }

@@ -24,6 +24,7 @@
 #include "report/verdicts.hpp"
 #include "study/alignment.hpp"
 #include "study/identification.hpp"
+#include "study/six_axes.hpp"
 #include "vehicle/scenario_file.hpp"
 
 namespace kelpie::cli {
@@ -64,7 +65,8 @@ struct IdentifyArguments : PlanOptions {
   std::optional<double> mass_kg;
   std::optional<double> surge_added_mass_kg;
   std::string vehicle;
-  std::string frame = "FLU";
+  std::string frame;
+  std::string volts;
   std::string out = "out/identify";
   std::vector<std::string> engines;
   AnswerOptions answer;
@@ -97,7 +99,12 @@ study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& ba
   return wish;
 }
 
-Frame body_frame(const std::string& name) {
+// Without an option: of a log in the plane, as kelpie simulates them, FLU; of six axes, as
+// ArduSub's messages are read, FRD.
+Frame body_frame(const std::string& name, bool six_axes) {
+  if (name.empty()) {
+    return six_axes ? Frame::frd : Frame::flu;
+  }
   const Frame frame = frame_from(name);
   require(frame == Frame::flu || frame == Frame::frd, "--frame", "has to be FLU or FRD");
   return frame;
@@ -171,49 +178,136 @@ study::CertificateList certificates_of(const format::IdentifiedVehicle& vehicle,
   return study::certify(engines, body, drive);
 }
 
-void run_identify(const IdentifyArguments& options) {
-  options.answer.begin();
-  const Frame frame = body_frame(options.frame);
-  const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
-  const study::KnownThrust wish = known_thrust(options, base);
-  const study::LearnPlan log = plan_log(options).plan;
+// Thrusts of --thrust, N per square of the log's unit, as of full commands.
+study::KnownThrust of_full_commands(study::KnownThrust wish,
+                                    const vehicle::VehicleParameters& vehicle) {
+  for (auto& [name, value] : wish.thrust) {
+    const auto thruster = std::ranges::find(vehicle.thrusters, name, &vehicle::Thruster::name);
+    if (thruster != vehicle.thrusters.end() &&
+        vehicle.command_unit == vehicle::CommandUnit::speed) {
+      value *= thruster->max_speed_rps * thruster->max_speed_rps;
+    }
+  }
+  return wish;
+}
+
+// An identification with what its files need.
+struct Identified {
+  study::Identification found;
+  Frame frame = Frame::flu;
+  std::optional<format::IdentifiedVehicle> vehicle{};
+  study::RecordedDrive drive{};
+};
+
+// On six axes, where the vehicle file has the thrusters of the log; else nothing, with the reason.
+std::optional<Identified> on_six_axes(const IdentifyArguments& options,
+                                      const study::KnownThrust& wish,
+                                      const vehicle::VehicleParameters& vehicle, std::string& why) {
+  PlanOptions plain = options;
+  const bool find_times = plain.align != "none";
+  if (plain.align == "auto") {
+    plain.align = "none";  // the fit finds lag and delay itself
+  }
+  const study::LearnPlan log = plan_log(plain).plan;
+  const auto columns =
+      study::six_axis_columns(log.data, log.settings.shared.states, vehicle, options.volts, why);
+  if (!columns) {
+    return std::nullopt;
+  }
+  const double neutral = log.alignment.alignment.actuators.empty() ? study::kRestUs : 0.0;
+  Identified result{.found = {}, .frame = body_frame(options.frame, true)};
+  SixAxisSettings how{.start = {.lag_s = find_times ? 0.1 : 0.0}, .find_times = find_times};
+  result.found =
+      study::identify_six_axes(log.data, log.split, *columns, vehicle, result.frame, neutral,
+                               of_full_commands(wish, vehicle), options.only, how);
+  result.found.alignment = find_times ? "lag and delay of the thrusters are found with the rest"
+                                      : "thrusters follow their commands at once, as asked";
+  if (result.found.scale != study::ScaleSource::none) {
+    result.vehicle = format::identified_on_six_axes(result.found, vehicle, options.vehicle);
+    result.drive = format::recorded_drive(*result.vehicle, result.found, log.data, log.split,
+                                          *columns, vehicle, result.frame, neutral, options.only);
+  }
+  return result;
+}
+
+Identified in_plane(const IdentifyArguments& options, const study::KnownThrust& wish,
+                    const Base& base) {
+  PlanOptions with_lags = options;
+  with_lags.with_lags = true;
+  const study::LearnPlan log = plan_log(with_lags).plan;
   const study::PlanarColumns columns =
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
-  std::vector<std::string> inputs = options.files();
-  inputs.push_back(options.vehicle);
-  const std::vector<EngineFile> wanted = wanted_files(options.engines);
-  const file::OutFolder out = take_out_folder(options.out, all_files(), inputs);
-  study::Identification found = study::identify(log.data, log.split, columns, wish, options.only);
-  found.alignment = study::alignment_text(log.alignment, log.data.rate_hz);
-  found.lags = log.lags;
+  Identified result{.found = study::identify(log.data, log.split, columns, wish, options.only),
+                    .frame = body_frame(options.frame, false)};
+  result.found.alignment = study::alignment_text(log.alignment, log.data.rate_hz);
+  result.found.lags = log.lags;
+  if (result.found.scale != study::ScaleSource::none) {
+    result.vehicle = format::identified_vehicle(result.found, result.frame, base, options.vehicle);
+    result.drive = format::recorded_drive(*result.vehicle, log.data, log.split,
+                                          format::drive_columns(columns, result.found),
+                                          result.frame, options.only);
+  }
+  return result;
+}
+
+Identified identified(const IdentifyArguments& options, const study::KnownThrust& wish,
+                      const Base& base) {
+  if (base && !vehicle::drives_in_plane(*base)) {
+    std::string why;
+    if (std::optional<Identified> six = on_six_axes(options, wish, *base, why)) {
+      return *std::move(six);
+    }
+    warn("in the plane, not on six axes: {}\n", why);
+  }
+  return in_plane(options, wish, base);
+}
+
+file::FileSet files_of(const Identified& result, const std::vector<EngineFile>& wanted) {
   file::FileSet files;
   for (const std::string& name : all_files()) {
     files[name] = std::nullopt;
   }
-  if (found.scale != study::ScaleSource::none) {
-    format::IdentifiedVehicle vehicle =
-        format::identified_vehicle(found, frame, base, options.vehicle);
-    const study::RecordedDrive drive = format::recorded_drive(
-        vehicle, log.data, log.split, format::drive_columns(columns, found), frame, options.only);
-    vehicle.usual_speed = format::usual_speed(drive);
-    found.certificates = certificates_of(vehicle, drive, wanted);
-    add_simulators(found, vehicle, wanted, files);
-    files[kCertificate] = format::certificate_json(found.certificates, found.source);
+  if (result.vehicle) {
+    add_simulators(result.found, *result.vehicle, wanted, files);
+    files[kCertificate] = format::certificate_json(result.found.certificates, result.found.source);
   }
-  files[kYaml] = format::parameters_yaml(found, frame);
-  files[kPage] = report::identification_html(found);
+  files[kYaml] = format::parameters_yaml(result.found, result.frame);
+  files[kPage] = report::identification_html(result.found);
+  return files;
+}
+
+void run_identify(const IdentifyArguments& given) {
+  given.answer.begin();
+  IdentifyArguments options = given;
+  if (!options.volts.empty()) {
+    options.log.also.push_back(options.volts);
+  }
+  body_frame(options.frame, false);  // a wrong name is told before a log is read
+  const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
+  const study::KnownThrust wish = known_thrust(options, base);
+  const std::vector<EngineFile> wanted = wanted_files(options.engines);
+  Identified result = identified(options, wish, base);
+  std::vector<std::string> inputs = options.files();
+  inputs.push_back(options.vehicle);
+  const file::OutFolder out = take_out_folder(options.out, all_files(), inputs);
+  if (result.vehicle) {
+    result.vehicle->usual_speed = format::usual_speed(result.drive);
+    result.found.certificates = certificates_of(*result.vehicle, result.drive, wanted);
+  }
+  const file::FileSet files = files_of(result, wanted);
   file::write_files_whole(out.path(), files);
-  Answer answer{.verdict = report::identification_verdict(found),
-                .tables = report::identification_table(found),
-                .document = options.answer.json ? format::parameters_json(found, frame) : "",
-                .files = {},
-                .next = {}};
+  Answer answer{
+      .verdict = report::identification_verdict(result.found),
+      .tables = report::identification_table(result.found),
+      .document = options.answer.json ? format::parameters_json(result.found, result.frame) : "",
+      .files = {},
+      .next = {}};
   for (const auto& [name, content] : files) {
     if (content) {
       answer.files.emplace_back("file", (out.path() / name).string());
     }
   }
-  answer.next = {found.scale == study::ScaleSource::none
+  answer.next = {result.found.scale == study::ScaleSource::none
                      ? fmt::format("kelpie identify {} --mass KG   (masses and forces, not ratios)",
                                    options.text(options.config))
                      : "kelpie simulate SCENARIO.toml   (docs/vehicle.md: drive the vehicle)"};
@@ -226,7 +320,6 @@ void add_identify(CLI::App& app) {
   const auto [command, options] = add_command(
       app, "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators",
       run_identify);
-  options->with_lags = true;
   options->check_targets = false;  // identify has a check of its own
   options->log.add_to(*command);
   add_files(command, "more", options->more, "logs of the same columns, joined to the first");
@@ -248,12 +341,17 @@ void add_identify(CLI::App& app) {
                    "gives the scale together with the mass [kg]; else assumed, 0.2 of it")
       ->check(within(kLeastMass, kMostScale))
       ->excludes(thrust);
-  add_file(command, "--vehicle", options->vehicle,
-           "vehicle file (docs/vehicle.md) with what the plane doesn't show; its mass, and "
-           "without --thrust its added mass in surge, give the scale");
+  add_file(
+      command, "--vehicle", options->vehicle,
+      "vehicle file (docs/vehicle.md): with the places of the log's thrusters all six axes are "
+      "identified, else it tells what the plane doesn't show; its mass, and without --thrust "
+      "its added mass in surge, give the scale");
+  command->add_option("--volts", options->volts,
+                      "column with the supply of the thrusters in V, for six axes");
   command
-      ->add_option("--frame", options->frame, "of the log: sway to port (FLU) or starboard (FRD)")
-      ->capture_default_str()
+      ->add_option("--frame", options->frame,
+                   "of the log: sway to port (FLU) or starboard (FRD); without the option FLU in "
+                   "the plane, FRD on six axes")
       ->type_name("{FLU,FRD}");
   add_list(command, "--for", options->engines,
            "simulators to write for, separated by commas; else all: kelpie, gazebo, gazebo_plugin, "
@@ -261,8 +359,9 @@ void add_identify(CLI::App& app) {
   add_seed(command, options->seed);
   add_out(command, options->out, "folder for the parameters and files of simulators");
   options->answer.add_to(*command, "the parameters as JSON");
-  add_examples(command, "identify dive.csv --rate 4 --units th1=rev/s,th2=rev/s,th3=rev/s",
-               "identify dive.bag --config vehicle.toml --mass 32.5 --frame FRD");
+  add_examples(
+      command, "identify dive.csv --rate 4 --units th1=rev/s,th2=rev/s,th3=rev/s",
+      "identify dive.BIN --vehicle vehicles/bluerov2_heavy.toml --volts voltage --for gazebo");
 }
 
 }  // namespace kelpie::cli

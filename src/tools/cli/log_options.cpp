@@ -63,6 +63,7 @@ std::string tell_mistakes(const std::string& source, const std::string& field,
 
 // The data of one log; `is_new`: no model wants all its inputs.
 log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new) {
+  opened.roles.also = options.log.also;
   log::Dataset data = is_new ? new_dataset(std::move(opened)) : opened.dataset();
   tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
   return data;
@@ -157,6 +158,7 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   if (!ignored.empty()) {
     roles.ignored = ignored;
   }
+  roles.also = also;
   add_units(units, roles.units);
   return roles;
 }

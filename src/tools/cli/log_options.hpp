@@ -26,7 +26,8 @@ struct LogOptions {
   std::string configuration;
   double rate_hz = 0.0;
   std::vector<std::string> ignored;
-  std::vector<std::string> units;  ///< column=unit
+  std::vector<std::string> units;   ///< column=unit
+  std::vector<std::string> also{};  ///< log::Roles::also
 
   void add_to(CLI::App& command);
   /// The options of add_to() that say what the columns of a table are.

@@ -14,8 +14,8 @@ constexpr const char* kHead = R"({mark} Identified by kelpie from {source}: {wha
 {mark} Constant forces in the log (surge, sway, heave in N, roll, pitch, yaw in N m; FRD): {forces}.
 )";
 
-std::string filled(const IdentifiedVehicle& vehicle, const std::string& source, const char* mark,
-                   const char* text) {
+std::string filled_template(const IdentifiedVehicle& vehicle, const std::string& source,
+                            const char* mark, const char* text) {
   Fields fields = vehicle_fields(vehicle, source);
   fields.push_back(fmt::arg("mark", mark));
   return fmt::vformat(kHead, fields) + fmt::vformat(text, fields);
@@ -127,23 +127,23 @@ SIM_BUOYANCY {net_buoyancy}
 }  // namespace
 
 std::string blue_yaml(const IdentifiedVehicle& vehicle, const std::string& source) {
-  return filled(vehicle, source, "#", kBlue);
+  return filled_template(vehicle, source, "#", kBlue);
 }
 
 std::string orca4_yaml(const IdentifiedVehicle& vehicle, const std::string& source) {
-  return filled(vehicle, source, "#", kOrca);
+  return filled_template(vehicle, source, "#", kOrca);
 }
 
 std::string mss_m(const IdentifiedVehicle& vehicle, const std::string& source) {
-  return filled(vehicle, source, "%", kMss);
+  return filled_template(vehicle, source, "%", kMss);
 }
 
 std::string python_vehicle(const IdentifiedVehicle& vehicle, const std::string& source) {
-  return filled(vehicle, source, "#", kPython);
+  return filled_template(vehicle, source, "#", kPython);
 }
 
 std::string ardupilot_parm(const IdentifiedVehicle& vehicle, const std::string& source) {
-  return filled(vehicle, source, "#", kArduPilot);
+  return filled_template(vehicle, source, "#", kArduPilot);
 }
 
 }  // namespace kelpie::format

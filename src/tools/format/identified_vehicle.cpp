@@ -10,9 +10,12 @@
 #include <span>
 
 #include "core/seconds.hpp"
+#include "core/text.hpp"
 #include "format/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "study/tuning.hpp"
+#include "vehicle/dynamics.hpp"
+#include "vehicle/simulator.hpp"
 
 namespace kelpie::format {
 namespace {
@@ -151,21 +154,6 @@ void fill_slots(IdentifiedVehicle& result, bool has_verticals) {
   result.has_slots = true;
 }
 
-// Roll and pitch in FRD; the heading is 0.
-Eigen::Quaterniond attitude_of(const Attitude& attitude, std::span<const double> inputs,
-                               Frame frame) {
-  if (attitude.quaternion) {
-    const auto [x, y, z, w] = *attitude.quaternion;
-    const double flip = frame == Frame::flu ? -1.0 : 1.0;
-    return Eigen::Quaterniond(inputs[w], inputs[x], flip * inputs[y], flip * inputs[z])
-        .normalized();
-  }
-  const double roll = attitude.roll ? attitude.roll_unit * inputs[*attitude.roll] : 0.0;
-  const double pitch = attitude.pitch ? attitude.pitch_unit * inputs[*attitude.pitch] : 0.0;
-  return Eigen::AngleAxisd(frame == Frame::flu ? -pitch : pitch, Eigen::Vector3d::UnitY()) *
-         Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
-}
-
 vehicle::Vector6 velocity_of(const DriveColumns& columns, std::span<const double> inputs,
                              Frame frame) {
   vehicle::Vector6 velocity = vehicle::Vector6::Zero();
@@ -202,7 +190,7 @@ study::RecordedDrive drive_of(const IdentifiedVehicle& vehicle, const log::Datas
     const std::span<const double> inputs = data.input(row);
     drive.times_s.push_back(data.times_s[row]);
     drive.velocities.push_back(velocity_of(columns, inputs, frame));
-    drive.attitudes.push_back(attitude_of(columns.attitude, inputs, frame));
+    drive.attitudes.push_back(Eigen::Quaterniond::Identity());
     vehicle::Vector6 force = vehicle.constant_force;
     for (std::size_t k = 0; k < columns.thrusters.size(); ++k) {
       force += vehicle.thrusters[k].force(columns.revolutions[k] * inputs[columns.thrusters[k]]);
@@ -212,15 +200,138 @@ study::RecordedDrive drive_of(const IdentifiedVehicle& vehicle, const log::Datas
   return drive;
 }
 
-}  // namespace
-
-double IdentifiedThruster::thrust(double speed_rps) const {
-  return (speed_rps > 0.0 ? forward : reverse) * speed_rps * std::abs(speed_rps);
+// Held-out rows of the configuration where these have a stretch of a minute, else all its rows.
+template <typename Drive>
+study::RecordedDrive of_chosen_rows(const log::Dataset& data, const study::Split& split,
+                                    std::optional<int> only, Drive drive_of_rows) {
+  const int wanted = data.configurations[study::training_rows(data, split, only).front()];
+  const auto of_configuration = [&](std::vector<std::size_t> rows) {
+    std::erase_if(rows, [&](std::size_t row) { return data.configurations[row] != wanted; });
+    return rows;
+  };
+  study::RecordedDrive drive = drive_of_rows(of_configuration(split.held_out));
+  drive.rows_text = "held-out rows";
+  if (!has_minute(drive)) {
+    std::vector<std::size_t> all(data.rows());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    drive = drive_of_rows(of_configuration(std::move(all)));
+    drive.rows_text = "all rows, those of the identification among them";
+  }
+  return drive;
 }
 
-vehicle::Vector6 IdentifiedThruster::force(double speed_rps) const {
-  return thrust(speed_rps) *
-         (vehicle::Vector6() << direction, position_m.cross(direction)).finished();
+// The value of a parameter that the log tells; else nothing.
+std::optional<double> told_value(const SixAxisFit& fit, std::size_t place) {
+  const FittedParameter& parameter = fit.parameters[place];
+  return parameter.state == ParameterState::not_told ? std::nullopt
+                                                     : std::optional(parameter.value);
+}
+
+void set_inertias(const SixAxisFit& fit, VehicleParameters& body) {
+  const vehicle::Matrix6 rigid =
+      vehicle::rigid_body_mass(body.mass_kg, body.centre_of_gravity_m, body.inertia_kg_m2);
+  for (std::size_t axis = 0; axis < kSixAxes; ++axis) {
+    const auto place = static_cast<Eigen::Index>(axis);
+    const double added = fit.parameters[SixAxisPlace::inertia + axis].value - rigid(place, place);
+    if (added < 0.0) {
+      throw InputError(axis < 3 ? "--mass" : "--vehicle",
+                       fmt::format("the rigid body's {} of {:.4g} is above the identified {} of "
+                                   "{:.4g}, which has the added mass as well",
+                                   axis < 3 ? "mass" : "moment of inertia", rigid(place, place),
+                                   fit.parameters[SixAxisPlace::inertia + axis].name,
+                                   fit.parameters[SixAxisPlace::inertia + axis].value));
+    }
+    body.added_mass(place, place) = added;
+  }
+  const auto couple = [&](std::size_t parameter, Eigen::Index a, Eigen::Index b, double sign) {
+    if (const std::optional<double> value = told_value(fit, parameter)) {
+      body.added_mass(a, b) = body.added_mass(b, a) = sign * *value - rigid(a, b);
+    }
+  };
+  couple(SixAxisPlace::low_centre, 0, 4, 1.0);
+  couple(SixAxisPlace::low_centre, 1, 3, -1.0);
+  couple(SixAxisPlace::forward_centre, 1, 5, 1.0);
+  couple(SixAxisPlace::forward_centre, 2, 4, -1.0);
+}
+
+void set_forces(const SixAxisFit& fit, VehicleParameters& body) {
+  for (std::size_t axis = 0; axis < kSixAxes; ++axis) {
+    const auto place = static_cast<Eigen::Index>(axis);
+    body.linear_damping(place) =
+        told_value(fit, SixAxisPlace::linear_drag + axis).value_or(body.linear_damping(place));
+    body.quadratic_damping(place) = told_value(fit, SixAxisPlace::quadratic_drag + axis)
+                                        .value_or(body.quadratic_damping(place));
+  }
+  body.net_buoyancy_n = -told_value(fit, SixAxisPlace::net_weight).value_or(-body.net_buoyancy_n);
+  const double weight = body.mass_kg * vehicle::kGravity;
+  const double buoyancy = weight + body.net_buoyancy_n;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (const std::optional<double> moment = told_value(fit, SixAxisPlace::moment + i)) {
+      const auto place = static_cast<Eigen::Index>(i);
+      body.centre_of_buoyancy_m(place) =
+          (weight * body.centre_of_gravity_m(place) - *moment) / buoyancy;
+    }
+  }
+}
+
+}  // namespace
+
+double IdentifiedThruster::thrust(double speed) const {
+  return (speed > 0.0 ? forward : reverse) * speed * std::abs(speed);
+}
+
+vehicle::Vector6 IdentifiedThruster::force(double speed) const {
+  return thrust(speed) * (vehicle::Vector6() << direction, position_m.cross(direction)).finished();
+}
+
+IdentifiedVehicle identified_on_six_axes(const study::Identification& found,
+                                         const VehicleParameters& base,
+                                         const std::string& base_file) {
+  const SixAxisFit& fit = *found.six;
+  IdentifiedVehicle result{.body = base};
+  result.identified.fill(true);
+  result.speeds = base.command_unit == vehicle::CommandUnit::speed;
+  result.speed_unit = result.speeds ? "in rev/s" : "as shares, -1 to 1, of the full command";
+  result.has_slots = true;
+  result.body.mass_kg = found.mass_kg.value_or(base.mass_kg);
+  set_inertias(fit, result.body);
+  set_forces(fit, result.body);
+  result.body.rotor_lag_s = fit.curve.lag_s;
+  result.body.rotor_delay_s = std::round(fit.curve.delay_s * vehicle::kTicksPerSecond) /
+                              static_cast<double>(vehicle::kTicksPerSecond);
+  result.body.battery.exponent = fit.curve.exponent;
+  for (std::size_t i = 0; i < base.thrusters.size(); ++i) {
+    vehicle::Thruster& slot = result.body.thrusters[i];
+    const double full = result.speeds ? slot.max_speed_rps * slot.max_speed_rps : 1.0;
+    const std::size_t place = SixAxisPlace::thruster(i);
+    slot.forward = fit.parameters[place].value / full;
+    const std::optional<double> reverse = told_value(fit, place + 1);
+    slot.reverse = reverse ? *reverse / full : slot.forward;
+    slot.dead_band = fit.curve.dead_band;
+    const double most = result.speeds ? slot.max_speed_rps : 1.0;
+    result.thrusters.push_back({.name = slot.name,
+                                .forward = slot.forward,
+                                .reverse = slot.reverse,
+                                .position_m = slot.position_m,
+                                .direction = slot.direction,
+                                .greatest = std::min(1.0, found.greatest_speeds[i]) * most,
+                                .reverse_told = reverse.has_value(),
+                                .lag_s = fit.curve.lag_s});
+  }
+  std::vector<std::string> missing;
+  for (const FittedParameter& parameter : fit.parameters) {
+    if (parameter.state == ParameterState::not_told) {
+      missing.push_back(parameter.name);
+    }
+  }
+  result.rest =
+      "mass and moments of inertia of the rigid body, centre of gravity, places of "
+      "thrusters, battery and hold as in " +
+      base_file;
+  if (!missing.empty()) {
+    result.rest += "; not told by the log and as there: " + join_text(missing, ", ");
+  }
+  return result;
 }
 
 DriveColumns drive_columns(const study::PlanarColumns& columns,
@@ -238,27 +349,43 @@ DriveColumns drive_columns(const study::PlanarColumns& columns,
 study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle, const log::Dataset& data,
                                     const study::Split& split, const DriveColumns& columns,
                                     Frame frame, std::optional<int> only) {
-  const int wanted = data.configurations[study::training_rows(data, split, only).front()];
-  const auto of_configuration = [&](std::vector<std::size_t> rows) {
-    std::erase_if(rows, [&](std::size_t row) { return data.configurations[row] != wanted; });
-    return rows;
-  };
-  study::RecordedDrive drive =
-      drive_of(vehicle, data, of_configuration(split.held_out), columns, frame);
-  drive.rows_text = "held-out rows";
-  if (!has_minute(drive)) {
-    std::vector<std::size_t> all(data.rows());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    drive = drive_of(vehicle, data, of_configuration(std::move(all)), columns, frame);
-    drive.rows_text = "all rows, those of the identification among them";
-  }
-  return drive;
+  return of_chosen_rows(data, split, only, [&](const std::vector<std::size_t>& rows) {
+    return drive_of(vehicle, data, rows, columns, frame);
+  });
+}
+
+study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle,
+                                    const study::Identification& found, const log::Dataset& data,
+                                    const study::Split& split, const study::SixAxisColumns& columns,
+                                    const vehicle::VehicleParameters& base, Frame frame,
+                                    double neutral, std::optional<int> only) {
+  return of_chosen_rows(data, split, only, [&](const std::vector<std::size_t>& picked) {
+    const SixAxisRows rows = study::six_axis_rows(data, picked, columns, base, frame, neutral);
+    const std::vector<double> speeds = thruster_speeds(rows, found.six->curve);
+    const std::size_t count = rows.thrusters.size();
+    study::RecordedDrive drive{.times_s = rows.times_s, .starts = rows.starts};
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      drive.velocities.emplace_back(
+          Eigen::Map<const vehicle::Vector6>(rows.velocities.data() + kSixAxes * row));
+      const Eigen::Map<const Eigen::Vector3d> down(rows.down.data() + 3 * row);
+      drive.attitudes.push_back(Eigen::Quaterniond::FromTwoVectors(down, Eigen::Vector3d::UnitZ()));
+      vehicle::Vector6 force = vehicle::Vector6::Zero();
+      for (std::size_t k = 0; k < count; ++k) {
+        // The fit's thrusts are those of shares of the full command.
+        const double share = speeds[row * count + k];
+        const double speed = vehicle.speeds ? share * base.thrusters[k].max_speed_rps : share;
+        force += vehicle.thrusters[k].force(speed);
+      }
+      drive.forces.push_back(force);
+    }
+    return drive;
+  });
 }
 
 IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame frame,
                                      const std::optional<VehicleParameters>& base,
                                      const std::string& base_file) {
-  PlanarVehicle plane = found.fit.vehicle();
+  PlanarVehicle plane = found.planar.vehicle();
   if (frame == Frame::flu) {
     turn_to_frd(plane);
   }
@@ -271,7 +398,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
     if (found.speed_units[i].empty()) {
       result.speed_unit = "taken for rev/s: the log's units don't say";
     }
-    const ParameterState reverse = found.fit.parameters[PlanarPlace::thruster(i) + 1].state;
+    const ParameterState reverse = found.planar.parameters[PlanarPlace::thruster(i) + 1].state;
     thruster.reverse_told = reverse != ParameterState::not_told;
     if (!thruster.reverse_told) {
       thruster.reverse = thruster.forward;

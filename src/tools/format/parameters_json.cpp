@@ -13,7 +13,7 @@ Json interval(double low, double high) {
 }
 
 Json parameter_json(const study::Identification& found, std::size_t place) {
-  const FittedParameter& parameter = found.fit.parameters[place];
+  const FittedParameter& parameter = found.fit().parameters[place];
   Json json{{"name", parameter.name},
             {"unit", parameter_unit(found, place)},
             {"state", state_word(parameter.state)}};
@@ -29,10 +29,10 @@ Json parameter_json(const study::Identification& found, std::size_t place) {
 Json correlations_json(const study::Identification& found) {
   const std::vector<std::size_t> told = identified_places(found);
   return {{"names",
-           file::list(told, [&](std::size_t i) { return Json(found.fit.parameters[i].name); })},
+           file::list(told, [&](std::size_t i) { return Json(found.fit().parameters[i].name); })},
           {"matrix", file::list(told, [&](std::size_t a) {
-             return file::list(told,
-                               [&](std::size_t b) { return number(found.fit.correlation(a, b)); });
+             return file::list(
+                 told, [&](std::size_t b) { return number(found.fit().correlation(a, b)); });
            })}};
 }
 
@@ -42,17 +42,17 @@ std::string parameters_json(const study::Identification& found, Frame frame) {
   Json json{{"format", kParametersFormat},
             {"version", kParametersVersion},
             {"log", found.source},
-            {"frame", frame == Frame::flu ? "FLU" : "FRD"},
+            {"frame", found.six || frame == Frame::frd ? "FRD" : "FLU"},
             {"training_rows", found.training_rows},
             {"split", found.split},
             {"scale", scale_text(found)},
-            {"misfit", number(found.fit.misfit)}};
+            {"misfit", number(found.fit().misfit)}};
   if (found.mass_kg) {
     json["mass_kg"] = *found.mass_kg;
   }
   if (!found.held_out.times_s.empty()) {
     Json& scores = json["held_out_r2"] = Json::object();
-    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    for (std::size_t axis = 0; axis < found.targets.size(); ++axis) {
       scores[found.targets[axis]] = {{"vehicle", number(found.held_out.r2[axis])},
                                      {"same_terms_untied", number(found.held_out.free_r2[axis])}};
     }
@@ -64,7 +64,7 @@ std::string parameters_json(const study::Identification& found, Frame frame) {
                 {"interval90", interval(lag.low_s, lag.high_s)}};
   });
   Json& parameters = json["parameters"] = Json::array();
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+  for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
     parameters.push_back(parameter_json(found, i));
   }
   json["correlations"] = correlations_json(found);

@@ -23,7 +23,7 @@ std::string number(fmt::format_string<double> format, double value) {
 }
 
 std::string parameter_line(const study::Identification& found, std::size_t place) {
-  const FittedParameter& parameter = found.fit.parameters[place];
+  const FittedParameter& parameter = found.fit().parameters[place];
   const std::string head =
       fmt::format("  {}: {{unit: {}, state: {}", quoted(parameter.name),
                   quoted(parameter_unit(found, place)), quoted(state_word(parameter.state)));
@@ -52,17 +52,52 @@ std::string correlations(const study::Identification& found) {
   const std::vector<std::size_t> told = identified_places(found);
   std::string names;
   for (const std::size_t i : told) {
-    names += (names.empty() ? "" : ", ") + quoted(found.fit.parameters[i].name);
+    names += (names.empty() ? "" : ", ") + quoted(found.fit().parameters[i].name);
   }
   std::string text = "correlations:\n  names: [" + names + "]\n  matrix:\n";
   for (const std::size_t a : told) {
     text += "    - [";
     for (const std::size_t b : told) {
-      text += (b == told.front() ? "" : ", ") + number("{:.3f}", found.fit.correlation(a, b));
+      text += (b == told.front() ? "" : ", ") + number("{:.3f}", found.fit().correlation(a, b));
     }
     text += "]\n";
   }
   return text;
+}
+
+// Of SixAxisPlace; thrusts are those at full command.
+std::string six_axis_unit(const study::Identification& found, std::size_t place) {
+  constexpr std::array kUnits{"kg",
+                              "kg",
+                              "kg",
+                              "kg m^2",
+                              "kg m^2",
+                              "kg m^2",
+                              "kg m",
+                              "kg m",
+                              "N s/m",
+                              "N s/m",
+                              "N s/m",
+                              "N m s/rad",
+                              "N m s/rad",
+                              "N m s/rad",
+                              "N s^2/m^2",
+                              "N s^2/m^2",
+                              "N s^2/m^2",
+                              "N m s^2/rad^2",
+                              "N m s^2/rad^2",
+                              "N m s^2/rad^2",
+                              "N",
+                              "N m",
+                              "N m",
+                              "N m"};
+  constexpr std::array kCurve{"s", "s", "1", "1"};
+  const std::size_t curve = SixAxisPlace::curve(found.six->thrusters.size());
+  if (place >= curve) {
+    return kCurve.at(place - curve);
+  }
+  const std::string unit = place < kUnits.size() ? kUnits[place] : "N";
+  return found.scale != study::ScaleSource::none ? unit : "(" + unit + ")/kg";
 }
 
 }  // namespace
@@ -84,8 +119,8 @@ std::string scale_text(const study::Identification& found) {
 
 std::vector<std::size_t> identified_places(const study::Identification& found) {
   std::vector<std::size_t> told;
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
-    if (found.fit.parameters[i].state == ParameterState::identified) {
+  for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
+    if (found.fit().parameters[i].state == ParameterState::identified) {
       told.push_back(i);
     }
   }
@@ -106,6 +141,9 @@ double half_width90(const FittedParameter& parameter) {
 }
 
 std::string parameter_unit(const study::Identification& found, std::size_t place) {
+  if (found.six) {
+    return six_axis_unit(found, place);
+  }
   constexpr std::array<const char*, PlanarPlace::thrusters> kUnits{
       "kg",        "kg",        "kg m",          "kg m^2", "N s/m", "N s/m", "N m s/rad",
       "N s^2/m^2", "N s^2/m^2", "N m s^2/rad^2", "N",      "N",     "N m"};
@@ -127,23 +165,23 @@ std::string parameter_unit(const study::Identification& found, std::size_t place
   }
   const std::string& unit = found.speed_units[index];
   return fmt::format("{}/({})^2", scaled ? "N" : "m/s^2",
-                     unit.empty() ? found.fit.vehicle().thrusters[index].name : unit);
+                     unit.empty() ? found.planar.vehicle().thrusters[index].name : unit);
 }
 
 std::string parameters_yaml(const study::Identification& found, Frame frame) {
   std::string text = fmt::format(
-      "# Parameters of Fossen's equation in the plane, by `kelpie identify`: docs/identify.md\n"
+      "# Parameters of Fossen's equation {}, by `kelpie identify`: docs/identify.md\n"
       "format: {}\nversion: {}\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
       "scale: {}\nmisfit: {}\n",
-      kParametersFormat, kParametersVersion, quoted(found.source),
-      frame == Frame::flu ? "FLU" : "FRD", found.training_rows, quoted(found.split),
-      quoted(scale_text(found)), number("{:.3g}", found.fit.misfit));
+      found.six ? "on six axes" : "in the plane", kParametersFormat, kParametersVersion,
+      quoted(found.source), found.six || frame == Frame::frd ? "FRD" : "FLU", found.training_rows,
+      quoted(found.split), quoted(scale_text(found)), number("{:.3g}", found.fit().misfit));
   if (found.mass_kg) {
     text += fmt::format("mass_kg: {:.6g}\n", *found.mass_kg);
   }
   if (!found.held_out.times_s.empty()) {
     text += "held_out_r2:\n";
-    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    for (std::size_t axis = 0; axis < found.targets.size(); ++axis) {
       text += fmt::format("  {}: {{vehicle: {}, same_terms_untied: {}}}\n",
                           quoted(found.targets[axis]), number("{:.4f}", found.held_out.r2[axis]),
                           number("{:.4f}", found.held_out.free_r2[axis]));
@@ -151,7 +189,7 @@ std::string parameters_yaml(const study::Identification& found, Frame frame) {
   }
   text += actuators(found);
   text += "parameters:\n";
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
+  for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
     text += parameter_line(found, i);
   }
   return text + correlations(found);

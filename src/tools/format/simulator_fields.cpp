@@ -172,17 +172,19 @@ Fields thruster_fields(const IdentifiedVehicle& vehicle, const IdentifiedThruste
   const bool told = thruster.reverse_told;
   add(fields, "name", xml_text(thruster.name));
   add(fields, "name_comment", comment_text(thruster.name));
-  add(fields, "place", numbers(thruster.position_m));
-  add(fields, "place_flu", numbers(mirrored(thruster.position_m)));
+  add(fields, "place", numbers_text(thruster.position_m));
+  add(fields, "place_flu", numbers_text(mirrored(thruster.position_m)));
   add(fields, "turn", turn_of(thruster.direction));
   add(fields, "turn_flu", turn_of(mirrored(thruster.direction)));
-  add(fields, "forward", thruster.forward * kPerRadians);
-  add(fields, "reverse", thruster.reverse * kPerRadians);
-  add(fields, "greatest", greatest * kTurn);
+  const double per_square = vehicle.speeds ? kPerRadians : 1.0;
+  add(fields, "forward", thruster.forward * per_square);
+  add(fields, "reverse", thruster.reverse * per_square);
+  add(fields, "greatest", vehicle.speeds ? greatest * kTurn : greatest);
+  add(fields, "per", vehicle.speeds ? "N/(rad/s)^2" : "N at full command");
   add(fields, "most_thrust", thruster.forward * greatest * greatest);
   add(fields, "least_thrust", -thruster.reverse * greatest * greatest);
   add(fields, "coefficient",
-      thruster.forward * kPerRadians /
+      thruster.forward * per_square /
           (kFreshWater * kPropellerDiameter * kPropellerDiameter * kPropellerDiameter *
            kPropellerDiameter));
   add(fields, "was", told ? "identified" : "taken as forwards, it never ran so");
@@ -201,6 +203,29 @@ Fields thruster_fields(const IdentifiedVehicle& vehicle, const IdentifiedThruste
   return fields;
 }
 
+namespace {
+
+// Matrices and lists of programs and YAML.
+void add_lists(const IdentifiedVehicle& vehicle, Fields& fields) {
+  const vehicle::VehicleParameters& body = vehicle.body;
+  add(fields, "inertia_m", rows_text(body.inertia_kg_m2, "  ", " ", ";\n"));
+  add(fields, "inertia_py", rows_text(body.inertia_kg_m2, "    [", ", ", "],\n"));
+  add(fields, "inertia_list", numbers_text(body.inertia_kg_m2.diagonal(), ", "));
+  add(fields, "gravity_list", numbers_text(body.centre_of_gravity_m, ", "));
+  add(fields, "buoyancy", numbers_text(body.centre_of_buoyancy_m));
+  add(fields, "buoyancy_list", numbers_text(body.centre_of_buoyancy_m, ", "));
+  add(fields, "weight", body.mass_kg * vehicle::kGravity);
+  add(fields, "buoyant_force", body.mass_kg * vehicle::kGravity + body.net_buoyancy_n);
+  add(fields, "net_buoyancy", body.net_buoyancy_n);
+  add(fields, "thruster_count", std::to_string(vehicle.thrusters.size()));
+  const Eigen::MatrixXd arms = thruster_matrix(vehicle);
+  add(fields, "arms_m", rows_text(arms, "  ", " ", ";\n"));
+  add(fields, "arms_py", rows_text(arms, "    [", ", ", "],\n"));
+  add(fields, "arms_list", rows_text(arms, "           ", ", ", ",\n"));
+}
+
+}  // namespace
+
 Fields vehicle_fields(const IdentifiedVehicle& vehicle, const std::string& source) {
   const vehicle::VehicleParameters& body = vehicle.body;
   const vehicle::Vector6& linear = body.linear_damping;
@@ -218,49 +243,37 @@ Fields vehicle_fields(const IdentifiedVehicle& vehicle, const std::string& sourc
   add(fields, "mass", body.mass_kg);
   add(fields, "volume", displaced / kFreshWater);
   add(fields, "sea_volume", displaced / kUuvSeaWater);
-  add(fields, "inertia", numbers(body.inertia_kg_m2.diagonal()));
+  add(fields, "inertia", numbers_text(body.inertia_kg_m2.diagonal()));
   add(fields, "ixx", body.inertia_kg_m2(0, 0));
   add(fields, "iyy", body.inertia_kg_m2(1, 1));
   add(fields, "izz", body.inertia_kg_m2(2, 2));
   add(fields, "ixy_flu", -body.inertia_kg_m2(0, 1));
   add(fields, "ixz_flu", -body.inertia_kg_m2(0, 2));
   add(fields, "iyz", body.inertia_kg_m2(1, 2));
-  add(fields, "gravity", numbers(body.centre_of_gravity_m));
-  add(fields, "gravity_flu", numbers(mirrored(body.centre_of_gravity_m)));
+  add(fields, "gravity", numbers_text(body.centre_of_gravity_m));
+  add(fields, "gravity_flu", numbers_text(mirrored(body.centre_of_gravity_m)));
   add(fields, "buoyancy_flu",
-      numbers(mirrored(Eigen::Vector3d(body.centre_of_buoyancy_m - body.centre_of_gravity_m))));
+      numbers_text(
+          mirrored(Eigen::Vector3d(body.centre_of_buoyancy_m - body.centre_of_gravity_m))));
   add(fields, "added_sdf", added_mass_sdf(mirrored(body.added_mass)));
   add(fields, "added_derivatives", derivatives_sdf(body));
-  add(fields, "added_rows", rows(body.added_mass, "          ", " ", "\n"));
-  add(fields, "added", numbers(body.added_mass.diagonal()));
+  add(fields, "added_rows", rows_text(body.added_mass, "          ", " ", "\n"));
+  add(fields, "added", numbers_text(body.added_mass.diagonal()));
   add(fields, "mean_added", body.added_mass.diagonal().head<3>().mean());
-  add(fields, "added_m", rows(body.added_mass, "  ", " ", ";\n"));
-  add(fields, "added_py", rows(body.added_mass, "    [", ", ", "],\n"));
-  add(fields, "minus_added_list", numbers((-body.added_mass.diagonal()).eval(), ", "));
+  add(fields, "added_m", rows_text(body.added_mass, "  ", " ", ";\n"));
+  add(fields, "added_py", rows_text(body.added_mass, "    [", ", ", "],\n"));
+  add(fields, "minus_added_list", numbers_text((-body.added_mass.diagonal()).eval(), ", "));
   add(fields, "damping_sdf", damping_sdf(body));
-  add(fields, "linear", numbers(linear));
-  add(fields, "quadratic", numbers(quadratic));
-  add(fields, "linear_list", numbers(linear, ", "));
-  add(fields, "quadratic_list", numbers(quadratic, ", "));
-  add(fields, "minus_linear_list", numbers((-linear).eval(), ", "));
-  add(fields, "minus_quadratic_list", numbers((-quadratic).eval(), ", "));
-  add(fields, "inertia_m", rows(body.inertia_kg_m2, "  ", " ", ";\n"));
-  add(fields, "inertia_py", rows(body.inertia_kg_m2, "    [", ", ", "],\n"));
-  add(fields, "inertia_list", numbers(body.inertia_kg_m2.diagonal(), ", "));
-  add(fields, "gravity_list", numbers(body.centre_of_gravity_m, ", "));
-  add(fields, "buoyancy", numbers(body.centre_of_buoyancy_m));
-  add(fields, "buoyancy_list", numbers(body.centre_of_buoyancy_m, ", "));
-  add(fields, "weight", body.mass_kg * vehicle::kGravity);
-  add(fields, "buoyant_force", body.mass_kg * vehicle::kGravity + body.net_buoyancy_n);
-  add(fields, "net_buoyancy", body.net_buoyancy_n);
-  add(fields, "thruster_count", std::to_string(vehicle.thrusters.size()));
-  const Eigen::MatrixXd arms = thruster_matrix(vehicle);
-  add(fields, "arms_m", rows(arms, "  ", " ", ";\n"));
-  add(fields, "arms_py", rows(arms, "    [", ", ", "],\n"));
-  add(fields, "arms_list", rows(arms, "           ", ", ", ",\n"));
+  add(fields, "linear", numbers_text(linear));
+  add(fields, "quadratic", numbers_text(quadratic));
+  add(fields, "linear_list", numbers_text(linear, ", "));
+  add(fields, "quadratic_list", numbers_text(quadratic, ", "));
+  add(fields, "minus_linear_list", numbers_text((-linear).eval(), ", "));
+  add(fields, "minus_quadratic_list", numbers_text((-quadratic).eval(), ", "));
+  add_lists(vehicle, fields);
   add_orca(vehicle, fields);
-  add(fields, "minus_linear", numbers((-linear).eval()));
-  add(fields, "minus_quadratic", numbers((-quadratic).eval()));
+  add(fields, "minus_linear", numbers_text((-linear).eval()));
+  add(fields, "minus_quadratic", numbers_text((-quadratic).eval()));
   return fields;
 }
 

@@ -26,7 +26,7 @@ double lag_of(const IdentifiedVehicle& vehicle, const IdentifiedThruster& thrust
 
 /// "1 2 3" with six digits.
 template <typename Vector>
-std::string numbers(const Vector& values, const char* separator = " ") {
+std::string numbers_text(const Vector& values, const char* separator = " ") {
   std::string text;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     text += fmt::format("{}{:.6g}", i > 0 ? separator : "", values(i) + 0.0);
@@ -36,11 +36,11 @@ std::string numbers(const Vector& values, const char* separator = " ") {
 
 /// Every row of a matrix as a line between `before` and `after`.
 template <typename Matrix>
-std::string rows(const Matrix& matrix, const char* before, const char* separator,
-                 const char* after) {
+std::string rows_text(const Matrix& matrix, const char* before, const char* separator,
+                      const char* after) {
   std::string text;
   for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-    text += before + numbers(matrix.row(row), separator) + after;
+    text += before + numbers_text(matrix.row(row), separator) + after;
   }
   return text;
 }

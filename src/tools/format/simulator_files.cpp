@@ -105,7 +105,7 @@ constexpr const char* kGazeboThruster = R"(    <link name="{name}_propeller">
         <limit><lower>-1e16</lower><upper>1e16</upper></limit>
       </axis>
     </joint>
-    <!-- in reverse {reverse} N/(rad/s)^2 was {was}, forwards {forward}: this plugin has one coefficient; the limits of the thrust are those of the log -->
+    <!-- in reverse {reverse} {per} was {was}, forwards {forward}: this plugin has one coefficient both ways, so command thrusts in N; the limits of the thrust are those of the log -->
     <plugin filename="gz-sim-thruster-system" name="gz::sim::systems::Thruster">
       <joint_name>{name}_joint</joint_name>
       <fluid_density>1000</fluid_density>
@@ -148,7 +148,7 @@ constexpr const char* kStonefishThruster = R"(  <actuator name="{name}" type="th
 constexpr const char* kUuv =
     R"(<!-- UUV Simulator and Plankton. Positions FLU (Gazebo); added mass and drag in FRD, to which the plugin turns velocities. -->
 <!-- Added mass positive (kg, kg m, kg m^2), drag negative (N s/m, N s^2/m^2, …). The added mass pushes back with a filtered -->
-<!-- acceleration of past steps, which is unstable above 5.6 times the mass: see the certificate. -->
+<!-- acceleration of past steps, which is unstable above 5.7 times the mass: see the certificate. -->
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="identified_hydro_model" params="namespace">
     <link name="${{namespace}}/base_link">
@@ -173,7 +173,7 @@ constexpr const char* kUuv =
   <xacro:property name="identified_thrusters">
 )";
 
-constexpr const char* kUuvThruster = R"(    <!-- {name_comment}: N/(rad/s)^2, {both} -->
+constexpr const char* kUuvThruster = R"(    <!-- {name_comment}: {per}, {both} -->
     <thruster name="{name}">
       <origin xyz="{place_flu}" rpy="{turn_flu}"/>
       <dynamics>{rotor_uuv}</dynamics>
@@ -206,14 +206,20 @@ std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& s
 }
 
 std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& source) {
+  const bool planar = !vehicle.identified[2];
   return fmt::format(
-             "# Identified by `kelpie identify` from {}.\n"
-             "# Surge, sway, yaw and the lateral thrusters are identified; {}.\n"
-             "# Commands are speeds of thrusters in rev/s, {}. Constant forces ({:.3g} N, {:.3g} "
-             "N, "
-             "{:.3g} N m) aren't part of a vehicle file.\n\n",
-             without_controls(source), without_controls(vehicle.rest), vehicle.speed_unit,
-             vehicle.constant_force(0), vehicle.constant_force(1), vehicle.constant_force(5)) +
+             "# Identified by `kelpie identify` from {}.\n# {} identified; {}.\n"
+             "# Thrusters {}.{}\n\n",
+             without_controls(source),
+             planar ? "Surge, sway, yaw and the lateral thrusters are"
+                    : "Six axes and thrusters are",
+             without_controls(vehicle.rest), vehicle.speed_unit,
+             planar
+                 ? fmt::format(" Constant forces ({:.3g} N, {:.3g} N, {:.3g} N m) aren't part of a "
+                               "vehicle file.",
+                               vehicle.constant_force(0), vehicle.constant_force(1),
+                               vehicle.constant_force(5))
+                 : "") +
          vehicle::vehicle_text(vehicle.body);
 }
 

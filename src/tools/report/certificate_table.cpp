@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -11,18 +12,25 @@
 namespace kelpie::report {
 namespace {
 
+std::string one_r2(double r2) {
+  return r2 < -1.0 ? "< −1" : chart::decimal(r2);
+}
+
+// Of up to three axes all, else the least with its axis.
 std::string r2_text(const study::DrivenHorizon& horizon, const std::array<bool, 6>& free) {
   if (horizon.starts < 2) {
     return "–";
   }
   std::string text;
+  std::size_t least = free.size();
   for (std::size_t axis = 0; axis < free.size(); ++axis) {
     if (free[axis]) {
-      const double r2 = horizon.r2[axis];
-      text += (text.empty() ? "" : "/") + (r2 < -1.0 ? "< −1" : chart::decimal(r2));
+      text += (text.empty() ? "" : "/") + one_r2(horizon.r2[axis]);
+      least = least == free.size() || horizon.r2[axis] < horizon.r2[least] ? axis : least;
     }
   }
-  return text;
+  const auto count = std::ranges::count(free, true);
+  return count <= 3 ? text : one_r2(horizon.r2[least]) + " " + vehicle::axis_text(least);
 }
 
 std::string step_text(double step_s) {
@@ -30,7 +38,8 @@ std::string step_text(double step_s) {
 }
 
 std::string bound_text(const vehicle::StepLimit& limit) {
-  return limit.term ? fmt::format("{}, {}", vehicle::term_text(*limit.term), vehicle::axis_text(limit.axis))
+  return limit.term ? fmt::format("{}, {}", vehicle::term_text(*limit.term),
+                                  vehicle::axis_text(limit.axis))
                     : "–";
 }
 

@@ -23,8 +23,8 @@ constexpr std::size_t kMostShown = 2000;  // rows in a figure
 chart::TextTable parameters_view(const study::Identification& found) {
   chart::TextTable table{
       "Parameters", {"parameter", "value", "90 % interval", "± %", "unit", ""}, {}};
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
-    const FittedParameter& parameter = found.fit.parameters[i];
+  for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
+    const FittedParameter& parameter = found.fit().parameters[i];
     const std::string name = chart::shortened(parameter.name, chart::kLongestName);
     const std::string unit = format::parameter_unit(found, i);
     if (parameter.state == ParameterState::not_told) {
@@ -47,8 +47,8 @@ chart::TextTable parameters_view(const study::Identification& found) {
 // The parameters that the log tells, as bars.
 std::string parameter_bars(const study::Identification& found) {
   std::vector<chart::IntervalRow> rows;
-  for (std::size_t i = 0; i < found.fit.parameters.size(); ++i) {
-    const FittedParameter& parameter = found.fit.parameters[i];
+  for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
+    const FittedParameter& parameter = found.fit().parameters[i];
     if (parameter.state == ParameterState::not_told || !std::isfinite(parameter.value)) {
       continue;
     }
@@ -77,11 +77,12 @@ std::string headline(const study::Identification& found, std::size_t told) {
   }
   std::vector<std::string> good;
   std::vector<std::string> poor;
-  for (std::size_t axis = 0; !found.held_out.times_s.empty() && axis < kPlanarAxes; ++axis) {
+  for (std::size_t axis = 0; !found.held_out.times_s.empty() && axis < found.targets.size();
+       ++axis) {
     (found.held_out.r2[axis] >= kTuning.poor_r2 ? good : poor).push_back(found.targets[axis]);
   }
   const std::string count =
-      fmt::format("{} of {} parameters identified", told, found.fit.parameters.size());
+      fmt::format("{} of {} parameters identified", told, found.fit().parameters.size());
   return poor.empty()   ? count
          : good.empty() ? count + ", but they predict no axis well: do not trust them"
                         : count + "; trust those of " + chart::list_text(good) + ", not those of " +
@@ -107,7 +108,7 @@ chart::TextTable held_out_view(const study::Identification& found) {
   if (found.held_out.times_s.empty()) {
     return table;
   }
-  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+  for (std::size_t axis = 0; axis < found.targets.size(); ++axis) {
     table.rows.push_back({chart::shortened(found.targets[axis], chart::kLongestName),
                           chart::decimal(found.held_out.r2[axis]),
                           chart::decimal(found.held_out.free_r2[axis]), chart::decimal(0.0)});
@@ -119,10 +120,10 @@ chart::TextTable held_out_view(const study::Identification& found) {
 chart::TextTable correlations_view(const study::Identification& found) {
   chart::TextTable table{"Strongest correlations of errors", {"parameters", "correlation"}, {}};
   std::vector<std::pair<double, std::string>> pairs;
-  const std::vector<FittedParameter>& parameters = found.fit.parameters;
+  const std::vector<FittedParameter>& parameters = found.fit().parameters;
   for (std::size_t a = 0; a < parameters.size(); ++a) {
     for (std::size_t b = a + 1; b < parameters.size(); ++b) {
-      const double correlation = found.fit.correlation(a, b);
+      const double correlation = found.fit().correlation(a, b);
       if (std::abs(correlation) >= kTuning.high_correlation) {
         pairs.emplace_back(correlation, parameters[a].name + ", " + parameters[b].name);
       }
@@ -181,7 +182,7 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
       break;
   }
   std::vector<std::string> not_told;
-  for (const FittedParameter& parameter : found.fit.parameters) {
+  for (const FittedParameter& parameter : found.fit().parameters) {
     if (parameter.state == ParameterState::not_told) {
       not_told.push_back(parameter.name);
     }
@@ -190,7 +191,8 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
     remarks.push_back("The log doesn't tell " + join_text(not_told, ", ") +
                       " apart from others: left out.");
   }
-  for (std::size_t axis = 0; !found.held_out.times_s.empty() && axis < kPlanarAxes; ++axis) {
+  for (std::size_t axis = 0; !found.held_out.times_s.empty() && axis < found.targets.size();
+       ++axis) {
     const double r2 = found.held_out.r2[axis];
     const double free = found.held_out.free_r2[axis];
     if (r2 < free - kTuning.structure_loss || r2 < kTuning.poor_r2) {
@@ -209,10 +211,10 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
 
 std::string identification_table(const study::Identification& found) {
   std::string text =
-      fmt::format("{}\n{} training rows, {} windows of {:.0f} s; {}; misfit {:.2f}\n\n",
+      fmt::format("{}\n{} training rows, {} windows of {:g} s; {}; misfit {:.2f}\n\n",
                   chart::printable(found.source), chart::grouped(found.training_rows),
-                  chart::grouped(found.fit.windows), found.fit.window_s,
-                  chart::printable(found.split), found.fit.misfit);
+                  chart::grouped(found.fit().windows), found.fit().window_s,
+                  chart::printable(found.split), found.fit().misfit);
   if (!found.alignment.empty()) {
     text += chart::wrapped(chart::printable(found.alignment)) + "\n\n";
   }
@@ -236,7 +238,7 @@ std::string identification_html(const study::Identification& found) {
   const std::string log = std::filesystem::path(found.source).filename().string();
   const std::string bars = parameter_bars(found);
   const auto told = static_cast<std::size_t>(
-      std::ranges::count_if(found.fit.parameters, [](const FittedParameter& parameter) {
+      std::ranges::count_if(found.fit().parameters, [](const FittedParameter& parameter) {
         return parameter.state != ParameterState::not_told && std::isfinite(parameter.value);
       }));
   std::string opening = chart::paragraph("over", "Parameters identified from " + log) +
@@ -251,8 +253,9 @@ std::string identification_html(const study::Identification& found) {
            {"alignment", found.alignment.empty() ? "–" : found.alignment},
            {"split", found.split},
            {"training rows", chart::grouped(found.training_rows)},
-           {"windows of 5 s", chart::grouped(found.fit.windows)},
-           {"misfit of the structure (1: chance)", chart::significant(found.fit.misfit)}}),
+           {fmt::format("windows of {:g} s", found.fit().window_s),
+            chart::grouped(found.fit().windows)},
+           {"misfit of the structure (1: chance)", chart::significant(found.fit().misfit)}}),
       true};
   if (told == 0) {
     return chart::html_page("kelpie: identify, " + log, opening, {data});
@@ -260,7 +263,7 @@ std::string identification_html(const study::Identification& found) {
   std::string course;
   if (!found.held_out.times_s.empty()) {
     course = chart::html_table(held_out_view(found));
-    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    for (std::size_t axis = 0; axis < found.targets.size(); ++axis) {
       course += chart::heading(3, found.targets[axis]) + axis_figure(found, axis);
     }
   }

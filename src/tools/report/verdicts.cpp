@@ -182,15 +182,15 @@ std::string rollout_verdict(const study::OpenLoopResult& result) {
 }
 
 std::string identification_verdict(const study::Identification& found) {
-  const auto told = std::ranges::count_if(found.fit.parameters, [](const FittedParameter& one) {
+  const auto told = std::ranges::count_if(found.fit().parameters, [](const FittedParameter& one) {
     return one.state != ParameterState::not_told;
   });
   std::string text = fmt::format("Identified {} of {} parameters from {} rows of {}\n", told,
-                                 found.fit.parameters.size(), chart::grouped(found.training_rows),
+                                 found.fit().parameters.size(), chart::grouped(found.training_rows),
                                  short_name(found.source));
   if (!found.held_out.times_s.empty()) {
     std::vector<std::string> r2;
-    for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
+    for (std::size_t axis = 0; axis < found.targets.size(); ++axis) {
       r2.push_back(found.targets[axis] + " " + chart::decimal(found.held_out.r2[axis]));
     }
     text += paragraph("R² of the identified vehicle on held-out rows: " + join_text(r2, ", "));

@@ -52,7 +52,7 @@ struct CertificateList {
 /// Options of certify().
 struct DriveStudy {
   std::array<double, 3> horizons_s{1.0, 10.0, 40.0};
-  double start_every_s = 5.0;  ///< from one start to the next
+  double start_every_s = 10.0;  ///< from one start to the next
 };
 
 /// Drives the rows again with every engine at its usual step, from measured velocities and

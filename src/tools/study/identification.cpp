@@ -56,16 +56,6 @@ std::vector<std::size_t> find_thrusters(const log::Dataset& data,
   return thrusters;
 }
 
-// Calls `estimate`, and names the log where its rows don't suffice.
-template <typename Estimate>
-auto of_log(const log::Dataset& data, Estimate estimate) {
-  try {
-    return estimate();
-  } catch (const InputError& error) {
-    throw InputError({.file = data.source, .line = 0, .field = {}}, error.what());
-  }
-}
-
 // A log of commands that go with no force (pulses far from 0, a vehicle at rest) has an estimate
 // that is no number.
 void require_numbers(const log::Dataset& data, const PlanarFit& fit) {
@@ -112,7 +102,7 @@ std::vector<std::size_t> of_configuration(const log::Dataset& data,
 
 HeldOutFit judge(const log::Dataset& data, const std::vector<std::size_t>& rows,
                  const PlanarColumns& columns, const PlanarFit& fit) {
-  HeldOutFit held_out;
+  HeldOutFit held_out(kPlanarAxes);
   const PlanarRows planar = planar_rows(data, rows, columns);
   const PlanarVehicle vehicle = fit.vehicle();
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -125,27 +115,25 @@ HeldOutFit judge(const log::Dataset& data, const std::vector<std::size_t>& rows,
       held_out.free[axis].push_back(untied[axis]);
     }
   }
-  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
-    held_out.r2[axis] = r_squared(held_out.measured[axis], held_out.structure[axis]);
-    held_out.free_r2[axis] = r_squared(held_out.measured[axis], held_out.free[axis]);
-  }
+  held_out.score();
   return held_out;
 }
 
-void give_scale(const KnownThrust& known, Identification& found) {
-  found.mass_kg = known.mass_kg;
+// Works on the fit of either kind.
+template <typename Fit>
+void give_scale_to(const KnownThrust& known, Fit& fit, ScaleSource& scale) {
   if (!known.thrust.empty()) {
-    found.fit = scaled_by_thrust(found.fit, known.thrust);
-    found.scale = ScaleSource::thrust;
+    scale_by_thrust(fit, known.thrust);
+    scale = ScaleSource::thrust;
   } else if (known.mass_kg) {
     const double mass = *known.mass_kg;
-    found.scale =
-        known.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
-    found.fit =
-        known.surge_added_mass_kg
-            ? scaled_by_inertia(found.fit, mass + *known.surge_added_mass_kg, 0.0)
-            : scaled_by_inertia(found.fit, mass * (1.0 + kTuning.identification.added_share),
-                                mass * kTuning.identification.added_error);
+    scale = known.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
+    if (known.surge_added_mass_kg) {
+      scale_by_inertia(fit, mass + *known.surge_added_mass_kg, 0.0);
+    } else {
+      scale_by_inertia(fit, mass * (1.0 + kTuning.identification.added_share),
+                       mass * kTuning.identification.added_error);
+    }
   }
 }
 
@@ -205,22 +193,48 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
   return planar;
 }
 
+HeldOutFit::HeldOutFit(std::size_t axes)
+    : measured(axes), structure(axes), free(axes), r2(axes), free_r2(axes) {}
+
+void HeldOutFit::score() {
+  for (std::size_t axis = 0; axis < measured.size(); ++axis) {
+    r2[axis] = r_squared(measured[axis], structure[axis]);
+    free_r2[axis] = r_squared(measured[axis], free[axis]);
+  }
+}
+
+Identification identification_of(const log::Dataset& data, const Split& split,
+                                 std::size_t training_rows) {
+  Identification found;
+  found.source = data.source;
+  found.split = split.label;
+  found.training_rows = training_rows;
+  return found;
+}
+
+void give_scale(const KnownThrust& known, Identification& found) {
+  found.mass_kg = known.mass_kg;
+  if (found.six) {
+    give_scale_to(known, *found.six, found.scale);
+  } else {
+    give_scale_to(known, found.planar, found.scale);
+  }
+}
+
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
                         const KnownThrust& known, std::optional<int> only) {
   const std::vector<std::size_t> training = training_rows(data, split, only);
   const int wanted = data.configurations[training.front()];
-  Identification found;
-  found.source = data.source;
-  found.split = split.label;
-  found.training_rows = training.size();
+  Identification found = identification_of(data, split, training.size());
   const PlanarRows rows = planar_rows(data, training, columns);
   require_accelerations(data, columns, rows, training);
-  found.fit = of_log(data, [&] { return fit_planar(rows); });
-  require_numbers(data, found.fit);
-  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
-    found.targets[axis] = data.target_names[columns.targets[axis]];
+  found.planar = of_log(data, [&] { return fit_planar(rows); });
+  require_numbers(data, found.planar);
+  for (const std::size_t target : columns.targets) {
+    found.targets.push_back(data.target_names[target]);
   }
-  found.held_out = judge(data, of_configuration(data, split.held_out, wanted), columns, found.fit);
+  found.held_out =
+      judge(data, of_configuration(data, split.held_out, wanted), columns, found.planar);
   give_scale(known, found);
   for (std::size_t i = 0; i < columns.thrusters.size(); ++i) {
     const auto unit = data.units.find(rows.thrusters[i]);

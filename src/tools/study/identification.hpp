@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "kelpie/model/six_axis_fit.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "log/dataset.hpp"
 #include "study/certificate.hpp"
@@ -28,14 +30,18 @@ struct KnownThrust {
 /// Source of the scale of forces.
 enum class ScaleSource : std::uint8_t { none, thrust, inertia, assumed_added_mass };
 
-/// Measured and predicted accelerations of held-out rows.
+/// Measured and predicted accelerations of held-out rows, an entry per axis.
 struct HeldOutFit {
+  explicit HeldOutFit(std::size_t axes = 0);
+
   std::vector<double> times_s{};
-  std::array<std::vector<double>, kPlanarAxes> measured{};
-  std::array<std::vector<double>, kPlanarAxes> structure{};  ///< by the identified vehicle
-  std::array<std::vector<double>, kPlanarAxes> free{};       ///< by the same terms, unconstrained
-  PlanarVector r2{};
-  PlanarVector free_r2{};
+  std::vector<std::vector<double>> measured;
+  std::vector<std::vector<double>> structure;  ///< by the identified vehicle
+  std::vector<std::vector<double>> free;       ///< by the same terms, unconstrained
+  std::vector<double> r2;
+  std::vector<double> free_r2;
+
+  void score();  ///< Sets r2 and free_r2.
 };
 
 /// A vehicle identified from a log.
@@ -43,16 +49,19 @@ struct Identification {
   std::string source;
   std::string split;  ///< label of the split
   std::size_t training_rows = 0;
-  PlanarFit fit;
+  PlanarFit planar;                 ///< in the plane
+  std::optional<SixAxisFit> six{};  ///< on six axes, instead
   ScaleSource scale = ScaleSource::none;
   std::optional<double> mass_kg{};
-  std::array<std::string, kPlanarAxes> targets{};
-  std::vector<std::string> speed_units{};  ///< of thrusters in the log; empty: unknown
-  std::vector<double> greatest_speeds{};   ///< of thrusters, absolute, in the log's unit
+  std::vector<std::string> targets{};
+  std::vector<std::string> speed_units{};  ///< of thrusters in the plane; empty: unknown
+  std::vector<double> greatest_speeds{};   ///< of thrusters, absolute, in the fit's unit
   HeldOutFit held_out{};                   ///< empty without held-out rows
   std::string alignment{};                 ///< of the commands, in words; empty: unknown
-  std::vector<LagInterval> lags{};         ///< time constants of actuators
+  std::vector<LagInterval> lags{};         ///< time constants of actuators, in the plane
   CertificateList certificates{};          ///< empty without a scale
+
+  const ParameterFit& fit() const { return six ? static_cast<const ParameterFit&>(*six) : planar; }
 };
 
 /// Roles of a log's columns in identification.
@@ -78,5 +87,22 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
 /// on an impossible scale; also throws what fit_planar() throws.
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
                         const KnownThrust& known, std::optional<int> only);
+
+/// The head of an identification: log, split and number of training rows.
+Identification identification_of(const log::Dataset& data, const Split& split,
+                                 std::size_t training_rows);
+
+/// Gives forces their unit, as far as known (docs/identify.md, "The scale").
+void give_scale(const KnownThrust& known, Identification& found);
+
+/// Calls `estimate`, and names the log where its rows don't suffice.
+template <typename Estimate>
+auto of_log(const log::Dataset& data, Estimate estimate) {
+  try {
+    return estimate();
+  } catch (const InputError& error) {
+    throw InputError({.file = data.source, .line = 0, .field = {}}, error.what());
+  }
+}
 
 }  // namespace kelpie::study

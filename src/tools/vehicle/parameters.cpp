@@ -16,6 +16,8 @@
 namespace kelpie::vehicle {
 namespace {
 
+constexpr std::array kCommandUnits{"speed", "share", "pwm"};  // in the order of CommandUnit
+
 bool positive(double value) {
   return std::isfinite(value) && value > 0.0;
 }
@@ -122,8 +124,12 @@ void Configuration::validate(const std::string& field) const {
           field + ".sensors.frozen", "must be 0 or 1 for each of surge, sway, yaw");
 }
 
+const char* command_unit_name(CommandUnit unit) {
+  return kCommandUnits[static_cast<std::size_t>(unit)];
+}
+
 CommandUnit command_unit_from(const std::string& name) {
-  const std::vector<std::string> names = {"speed", "share", "pwm"};
+  const std::vector<std::string> names(kCommandUnits.begin(), kCommandUnits.end());
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
     throw InputError("'" + name + "' is no kind of command; there are speed, share and pwm" +

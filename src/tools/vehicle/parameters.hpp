@@ -42,6 +42,7 @@ enum class CommandUnit {
 };
 
 CommandUnit command_unit_from(const std::string& name);  ///< Throws InputError.
+const char* command_unit_name(CommandUnit unit);         ///< As in a vehicle file.
 
 /// A fixed thruster with the force K± n|n| along `direction`.
 struct Thruster {

@@ -3,12 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 namespace kelpie::vehicle {
 namespace {
-
-constexpr std::array kUnits{"speed", "share", "pwm"};
 
 template <typename Vector>
 std::string list(const Vector& values) {
@@ -32,9 +28,8 @@ std::string table(const Matrix& matrix) {
 }
 
 std::string rotors_text(const VehicleParameters& vehicle) {
-  std::string text =
-      fmt::format("[rotors]\ncommand = \"{}\"\nlag_s = {:.6g}\n",
-                  kUnits.at(static_cast<std::size_t>(vehicle.command_unit)), vehicle.rotor_lag_s);
+  std::string text = fmt::format("[rotors]\ncommand = \"{}\"\nlag_s = {:.6g}\n",
+                                 command_unit_name(vehicle.command_unit), vehicle.rotor_lag_s);
   if (vehicle.rotor_rate > 0.0) {
     text += fmt::format("rate = {:.6g}\n", vehicle.rotor_rate);
   }

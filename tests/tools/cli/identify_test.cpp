@@ -75,7 +75,9 @@ TEST_F(Identify, TheIdentifiedVehicleDrivesAsTheTrueOne) {
     EXPECT_LT(std::sqrt(off / all), 0.02) << column;
   }
   for (const char* const file :
-       {"parameters.yaml", "identify.html", "gazebo.sdf", "uuv_simulator.xacro", "stonefish.xml"}) {
+       {"parameters.yaml", "identify.html", "certificate.json", "gazebo.sdf", "gazebo_plugin.sdf",
+        "uuv_simulator.xacro", "stonefish.xml", "blue.yaml", "orca4.yaml", "mss.m",
+        "python_vehicle.py", "ardupilot.parm"}) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
   }
   const std::string gazebo = content("out/gazebo.sdf");
@@ -83,6 +85,46 @@ TEST_F(Identify, TheIdentifiedVehicleDrivesAsTheTrueOne) {
   EXPECT_NE(gazebo.find("<fluid_added_mass>"), std::string::npos);
   EXPECT_NE(content("out/uuv_simulator.xacro").find("<linear_damping>\n          -1"),
             std::string::npos);
+}
+
+const std::string kHeavy = KELPIE_SOURCE_DIR "/vehicles/bluerov2_heavy.toml";
+
+TEST_F(Identify, SixAxesWhereTheVehicleFileHasTheLogsThrusters) {
+  write("heavy.toml", "vehicle = \"" + kHeavy +
+                          "\"\nrate_hz = 20.0\nlog = \"six_axes\"\nnoise = \"as_recorded\"\n"
+                          "[excitation]\nmode = \"pilot\"\nperiod_s = [1.0, 6.0]\n"
+                          "effort = [50, 50, 40, 6, 6, 4]\ndither = 0.1\n[[configurations]]\n"
+                          "name = \"nominal\"\n[[phases]]\nconfiguration = \"nominal\"\n"
+                          "duration_s = 300.0\n");
+  testing::succeeded(run("simulate heavy.toml --out heavy.csv"));
+  const std::string known = "heavy.csv --vehicle " + kHeavy;
+  const Outcome outcome = testing::succeeded(
+      run("identify " + known +
+          " --volts voltage --for kelpie,gazebo,gazebo_plugin --out out --verbose"));
+  const std::string yaml = content("out/parameters.yaml");
+  EXPECT_NE(yaml.find("on six axes"), std::string::npos) << yaml;
+  EXPECT_NE(yaml.find("frame: FRD"), std::string::npos);
+  double heave = 0.0;
+  const std::size_t at = yaml.find("\"heave_inertia\"");
+  ASSERT_NE(at, std::string::npos) << yaml;
+  ASSERT_EQ(std::sscanf(yaml.c_str() + yaml.find("value: ", at), "value: %lf", &heave), 1);
+  EXPECT_NEAR(heave, 13.5 + 18.68, 0.5);
+  EXPECT_TRUE(exists("out/gazebo.sdf"));
+  EXPECT_FALSE(exists("out/blue.yaml")) << "not asked for";
+  const std::string certificate = content("out/certificate.json");
+  EXPECT_NE(certificate.find("\"engine\": \"gazebo_plugin\""), std::string::npos) << certificate;
+  EXPECT_NE(certificate.find("\"limited_by\": \"added mass\""), std::string::npos);
+  EXPECT_EQ(certificate.find("orca4"), std::string::npos);
+  EXPECT_NE(outcome.out.find("gazebo_plugin (Gazebo, added mass by the Hydrodynamics plugin) is "
+                             "unstable"),
+            std::string::npos)
+      << outcome.out;
+  write("again.toml",
+        std::string(content("heavy.toml"))
+            .replace(0, content("heavy.toml").find('\n'), "vehicle = \"out/vehicle.toml\""));
+  testing::succeeded(run("simulate again.toml --out again.csv"));
+  expect_refused(known + " --for gazebbo", "did you mean 'gazebo'?");
+  expect_refused(known + " --volts batt", "batt");
 }
 
 // The log with the commands that rotors with a time constant of 1 s would have needed.

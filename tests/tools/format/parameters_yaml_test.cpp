@@ -13,10 +13,10 @@ TEST(ParametersYaml, HasNullWhereThereIsNoNumber) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   study::Identification found;
   found.targets = {"udot", "vdot", "rdot"};
-  found.fit.parameters = {{"surge_inertia", 1.0, 0.0, ParameterState::known},
-                          {"sway_inertia", kNone, -kNone, ParameterState::identified}};
-  found.fit.misfit = kNone;
-  found.fit.covariance = Matrix(2, 2);
+  found.planar.parameters = {{"surge_inertia", 1.0, 0.0, ParameterState::known},
+                             {"sway_inertia", kNone, -kNone, ParameterState::identified}};
+  found.planar.misfit = kNone;
+  found.planar.covariance = Matrix(2, 2);
   found.held_out.times_s = {0.0};
   found.held_out.r2 = {kNone, 0.5, -std::numeric_limits<double>::infinity()};
   const std::string text = format::parameters_yaml(found, Frame::flu);

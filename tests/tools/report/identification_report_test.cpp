@@ -20,7 +20,7 @@ study::Identification found_nothing() {
 
 TEST(IdentificationReport, WithoutParametersOneSentenceSaysWhy) {
   study::Identification found = found_nothing();
-  found.fit.parameters = {{.name = "surge_inertia", .value = NAN}};
+  found.planar.parameters = {{.name = "surge_inertia", .value = NAN}};
   const std::string page = report::identification_html(found);
   EXPECT_EQ(take_apart(page).fault, "");
   EXPECT_NE(page.find("No parameter was identified: the log does not tell"), std::string::npos);
@@ -29,10 +29,10 @@ TEST(IdentificationReport, WithoutParametersOneSentenceSaysWhy) {
 
 TEST(IdentificationReport, IntervalsAreBarsOnAScaleOfTheValue) {
   study::Identification found = found_nothing();
-  found.fit.parameters = {
+  found.planar.parameters = {
       {.name = "sure", .value = 2.0, .error = 0.02, .state = ParameterState::identified},
       {.name = "unsure", .value = -2.0, .error = 9.0, .state = ParameterState::identified}};
-  found.fit.covariance = Matrix(2, 2);
+  found.planar.covariance = Matrix(2, 2);
   const std::string page = report::identification_html(found);
   EXPECT_EQ(take_apart(page).fault, "");
   EXPECT_NE(page.find("2 of 2 parameters identified."), std::string::npos);

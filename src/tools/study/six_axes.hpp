@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kelpie/model/six_axis_fit.hpp"
+#include "kelpie/motion/attitude.hpp"
+#include "kelpie/motion/frame.hpp"
+#include "log/dataset.hpp"
+#include "study/identification.hpp"
+#include "study/split.hpp"
+#include "vehicle/parameters.hpp"
+#include "vehicle/simulation.hpp"
+
+namespace kelpie::study {
+
+inline constexpr double kRestUs = 1500.0;  ///< pulse at rest
+
+/// Roles of a log's columns in identification on six axes: places among inputs and targets.
+struct SixAxisColumns {
+  std::array<std::size_t, kSixAxes> velocities{};
+  std::array<std::size_t, kSixAxes> targets{};  ///< accelerations of the velocities
+  Attitude attitude{};
+  std::vector<std::size_t> thrusters{};  ///< inputs, in the order of the vehicle file
+  std::optional<std::size_t> volts{};    ///< input: supply of the thrusters
+};
+
+/// The columns, if the log has six velocities with targets, an attitude, and a command for each
+/// thruster of the vehicle, by name; otherwise none, and `why` says what is missing. Throws
+/// InputError (--volts) on a name that is no input.
+std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const std::string& states,
+                                               const vehicle::VehicleParameters& vehicle,
+                                               const std::string& volts, std::string& why);
+
+/// Ascending rows for fit_six_axes(), turned to FRD. Commands by the vehicle's unit: 0 at rest, ±1
+/// in full. `neutral`: pulse at rest in the log, 1500, or 0 where it has been subtracted.
+SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
+                          const SixAxisColumns& columns, const vehicle::VehicleParameters& vehicle,
+                          Frame frame, double neutral);
+
+/// Rows of a simulated log of six axes.
+SixAxisRows six_axis_rows(const std::vector<vehicle::SixAxisRow>& log,
+                          const vehicle::VehicleParameters& vehicle);
+
+/// The parameters of a vehicle file in the order of SixAxisPlace: what should be identified.
+std::vector<double> six_axis_truth(const vehicle::VehicleParameters& vehicle);
+
+/// Identifies on the training rows of the configuration `only` (default: the first), and scores on
+/// its held-out rows. `known`: the scale. Throws what fit_six_axes() throws, naming the log.
+Identification identify_six_axes(const log::Dataset& data, const Split& split,
+                                 const SixAxisColumns& columns,
+                                 const vehicle::VehicleParameters& vehicle, Frame frame,
+                                 double neutral, const KnownThrust& known, std::optional<int> only,
+                                 const SixAxisSettings& options);
+
+}  // namespace kelpie::study
