@@ -16,8 +16,7 @@ namespace kelpie {
 class VelocityFilter {
  public:
   static constexpr int kMostVelocities = 6;
-  static constexpr int kPlanar = 5;  ///< current, position, heading
-  static constexpr int kMost = 2 * kMostVelocities + kPlanar;
+  static constexpr int kMost = 2 * kMostVelocities + 5;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 
@@ -67,6 +66,8 @@ class VelocityFilter {
   const OpenLoop& model() const { return model_; }
 
  private:
+  static constexpr int kPlanar = 5;  ///< current, position, heading
+
   Vector rate(const Vector& s, double share);
   Matrix slope(const Vector& s, double share);
   void step(double from, double to, double step_s, double factor);
