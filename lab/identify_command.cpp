@@ -27,7 +27,7 @@ constexpr std::array<Eigen::Index, kPlanarAxes> kOfSix{0, 1, 5};
 
 // As the log is: in the plane FLU, on six axes FRD.
 std::vector<double> truth_of(const vehicle::Scenario& scenario) {
-  if (scenario.log == vehicle::LogKind::six_axes) {
+  if (scenario.log == vehicle::LogKind::six) {
     return study::six_axis_truth(scenario.vehicle);
   }
   const vehicle::Plant plant =
@@ -59,7 +59,7 @@ ParameterFit identify_six_axes_seed(const vehicle::Scenario& scenario) {
 
 // The scale is the left thruster's true forward coefficient.
 ParameterFit identify_seed(const vehicle::Scenario& scenario) {
-  if (scenario.log == vehicle::LogKind::six_axes) {
+  if (scenario.log == vehicle::LogKind::six) {
     return identify_six_axes_seed(scenario);
   }
   PlanarRows rows;

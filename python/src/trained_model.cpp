@@ -124,8 +124,13 @@ py::tuple rollout(const TrainedModel& model, const Array& x, const Array& t, boo
 void bind_trained_model(py::module_& module) {
   py::class_<TrainedModel>(module, "TrainedModel",
                            "A model that no longer learns: what model.json holds.")
-      .def_static("parse", &format::parse_model_json, py::arg("text"), py::arg("source"),
-                  "Reads the text of a model.json; ValueError naming `source` and the key.")
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::string& source) {
+            return format::parse_model_json(text, source);
+          },
+          py::arg("text"), py::arg("source"),
+          "Reads the text of a model.json; ValueError naming `source` and the key.")
       .def_static(
           "read", [](const std::string& file) { return format::read_model(file); }, py::arg("file"),
           "Reads a model.json; ValueError naming the file and the key.")

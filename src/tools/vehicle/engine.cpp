@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vehicle/engine.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <vector>
 
-#include "core/normal_equations.hpp"
 #include "vehicle/dynamics.hpp"
 
 namespace kelpie::vehicle {
@@ -51,7 +51,8 @@ Matrix6 inverse_on(const std::array<bool, 6>& free, const Matrix6& mass) {
   }
   Matrix6 inverse = Matrix6::Zero();
   const Eigen::MatrixXd part = mass(axes, axes);
-  inverse(axes, axes) = equilibrated_inverse(part);
+  const Eigen::MatrixXd inverse_part = part.partialPivLu().inverse();
+  inverse(axes, axes) = inverse_part;
   return inverse;
 }
 
