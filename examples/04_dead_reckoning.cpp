@@ -4,10 +4,10 @@
 //
 // Prints:
 //     age   true u   reckoned   spread   [m/s]
-//    10 s    0.532      0.531    0.017
-//    20 s   -1.086     -1.086    0.027
-//    30 s   -0.263     -0.262    0.022
-//   way made good -4.88 m, reckoned -4.88 m: 0.00 m off
+//    10 s    0.532      0.532    0.058
+//    20 s   -1.086     -1.089    0.054
+//    30 s   -0.263     -0.264    0.046
+//   way made good -4.88 m, reckoned -4.90 m: 0.02 m off
 
 #include <array>
 #include <cmath>

@@ -32,7 +32,7 @@ const Building kLibrary{
     {"learner", {"motion", "svr", "core"}},
     {"model", {"learner", "motion", "svr", "core"}},
     {"navigation", {"model", "core"}},
-    {"c", {"model", "learner", "motion", "stream", "svr", "core"}},
+    {"c", {"navigation", "model", "learner", "motion", "stream", "svr", "core"}},
 };
 
 // Rooms of the other buildings, and which of these rooms each may know; for rooms of the library,

@@ -65,7 +65,9 @@ struct SixAxisPlace {
   static constexpr std::size_t thrusters = 24;       ///< forward, reverse
   static constexpr std::size_t curve_size = 4;       ///< lag, delay, dead band, exponent
 
+  /// Of the forward coefficient of a thruster, counted from 0.
   static constexpr std::size_t thruster(std::size_t index) { return thrusters + 2 * index; }
+  /// Of the thrust curve, after `count` thrusters.
   static constexpr std::size_t curve(std::size_t count) { return thrusters + 2 * count; }
 };
 
@@ -78,9 +80,10 @@ struct SixAxisFit : ParameterFit {
   ThrustCurve curve;
   Matrix free_terms;  ///< coefficients of the terms without the structure: terms × axes
 
-  /// ν̇ by the identified vehicle, and with free_terms. Requires `speeds` as of thruster_speeds().
+  /// ν̇ by the identified vehicle. Requires `speeds` as of thruster_speeds().
   SixVector acceleration(std::span<const double, kSixAxes> velocity,
                          std::span<const double, 3> down, std::span<const double> speeds) const;
+  /// ν̇ by free_terms. Requirements as of acceleration().
   SixVector free_acceleration(std::span<const double, kSixAxes> velocity,
                               std::span<const double, 3> down,
                               std::span<const double> speeds) const;

@@ -71,12 +71,11 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
   Decision decision = mutable_champion().update(z, y - change()(z), t);
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
-    const bool counts = is_new_evidence(t);
-    if (counts && task_ != SliceTask::recall) {
+    if (task_ != SliceTask::recall) {
       memory_.observe(z, y, error, t);
     }
     measure_misfit();
-    if (counts && task_ == SliceTask::none) {
+    if (task_ == SliceTask::none) {
       detect_change(decision,
                     {.champion = error,
                      .challenger = comparable ? std::optional(other) : std::nullopt,
@@ -93,13 +92,6 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
   add_change();
   tally_.add(decision);
   return decision;
-}
-
-// At a high rate successive errors are alike, and say the same of the vehicle.
-bool AdaptiveSvr::is_new_evidence(double t) {
-  const bool counts = t - counted_s_ >= kOnline.evidence.step_s;
-  counted_s_ = counts ? t : counted_s_;
-  return counts;
 }
 
 void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
@@ -340,7 +332,6 @@ void AdaptiveSvr::visit(Archive& archive) {
   archive.part("misfit", misfit_);
   archive.part("tally", tally_);
   archive.part("memory", memory_);
-  archive.any_number(counted_s_);
   const bool of_a_past_model = task_ == SliceTask::follow ? past_ <= memory_.models().size()
                                                           : past_ < memory_.models().size();
   archive.require(of_a_past_model || (task_ != SliceTask::follow && task_ != SliceTask::recall),

@@ -29,9 +29,6 @@ namespace kelpie {
 /// another scale and the recall of a past model. The champion stays in service meanwhile. During a
 /// task no challenger is tried, no past model is recalled, and no other task begins.
 ///
-/// Samples less than 0.2 s after the last sample that counted teach the learners, and are no
-/// evidence for or against a change: the constants of detection are samples at 5 Hz or less.
-///
 /// A change of the vehicle may be known as a step of the terms' weights (shift()). The samples then
 /// stay as they are: the champion learns later targets less the change since its samples
 /// (TermChange), and model() adds the change. Past models are of the vehicle itself.
@@ -132,7 +129,6 @@ class AdaptiveSvr final : public OnlineRegressor {
   double error_without_short_range(std::size_t learner, std::span<const double> z, double y) const;
   void clear_challenger();
   void add_change();
-  bool is_new_evidence(double t);
   bool teach_challenger(std::span<const double> z, double y, double t);
   void measure_misfit();
   double usual_misfit() const;
@@ -156,8 +152,7 @@ class AdaptiveSvr final : public OnlineRegressor {
   RobustScale misfit_;          ///< residuals in the champion's own buffer, without short range
   std::vector<double> sample_;  ///< scratch
   Tally tally_;                 ///< over all champions
-  double counted_s_ = -std::numeric_limits<double>::infinity();  ///< last sample that counted [s]
-  Budget budget_;                                                ///< of every update
+  Budget budget_;               ///< of every update
 
   SliceTask task_ = SliceTask::none;
   PastModel draft_;            ///< rescale: the champion's samples at the start of the task

@@ -78,7 +78,6 @@ struct OnlineTuning {
 
   /// ErrorCorrelation.
   struct Evidence {
-    double step_s = 0.199;      ///< s between two samples that count for changes: 5 Hz, rounded
     double first = 10.0;        ///< rows per independent sample, before they are known
     std::int64_t least = 64;    ///< errors before they are known: by hand
     std::int64_t every = 8;     ///< errors between two looks: by hand

@@ -124,7 +124,7 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   if (!guarded_ || !valid_sample(x, arguments_.inputs, y, t)) {
     return trusted().update(x, y, t);
   }
-  const bool refused = doubtful(x, y);
+  const bool refused = doubtful(x, y, t);
   count_time(refused, t);
   const bool another_serves = refused != candidate_serves_;  // than the axis that learns
   const Prediction said = refused || another_serves ? assess(x) : Prediction{};
@@ -138,9 +138,14 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   return decision;
 }
 
+// In the first half minute nothing has been held for long.
+bool GuardedAxis::plausible(std::span<const double> x, double y, double t) const {
+  return trusted().plausible(x, y) && (t >= held_from_ || !trusted().far(x));
+}
+
 // An implausible sample, or one among implausible samples.
-bool GuardedAxis::doubtful(std::span<const double> x, double y) {
-  const bool implausible = trusted().scaling() != nullptr && !trusted().plausible(x, y);
+bool GuardedAxis::doubtful(std::span<const double> x, double y, double t) {
+  const bool implausible = trusted().scaling() != nullptr && !plausible(x, y, t);
   if (implausible && recent_ <= kGuard.company) {
     evidence_ = {};  // of one stretch: a sensor that is stuck explains its next stretch
   }
@@ -151,6 +156,7 @@ bool GuardedAxis::doubtful(std::span<const double> x, double y) {
 void GuardedAxis::count_time(bool refused, double t) {
   if (young_until_ == kNever) {
     young_until_ = t + kGuard.young_s;
+    held_from_ = t + kGuard.held_s;
     next_look_ = t + kGuard.look_s;
   }
   const double kept = std::exp(-(t - std::max(before_, t - kGuard.look_s)) / kGuard.share_s);
@@ -205,7 +211,7 @@ Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double 
 }
 
 Decision GuardedAxis::learn_in_candidate(std::span<const double> x, double y, double t) {
-  if (!trusted().plausible(x, y)) {  // a sample in such company tells nothing
+  if (!plausible(x, y, t)) {  // a sample in such company tells nothing
     evidence_.add(candidate().predict(x), y, candidate().scaling()->target.scale);
   }
   Decision decision = candidate().update(x, y, t);
@@ -302,7 +308,7 @@ void GuardedAxis::feed() {
   DynamicsAxis& learner = feeds_trusted_ ? trusted() : candidate();
   for (std::size_t k = 0; k < kGuard.per_update && feed_.size() > 0; ++k) {
     const WarmUp::Sample row = feed_[0];
-    if (!feeds_trusted_ || trusted().scaling() == nullptr || trusted().plausible(row.x, row.y)) {
+    if (!feeds_trusted_ || trusted().scaling() == nullptr || plausible(row.x, row.y, row.t)) {
       learner.update(row.x, row.y, row.t);
     }
     feed_.drop_oldest(1);
@@ -407,6 +413,7 @@ void GuardedAxis::visit(Archive& archive) {
   archive.flag(guarded_);
   archive.part("first", first_);
   archive.any_number(young_until_);
+  archive.any_number(held_from_);
   archive.part("refused", refused_);
   archive.whole(run_);
   archive.whole(passed_);

@@ -16,8 +16,8 @@ namespace kelpie {
 
 /// An axis guarded against garbage: a scale is trusted after probation only.
 ///
-/// A sample more than 10 standard deviations away is implausible for an axis, unless each input
-/// stays within three times its largest magnitude so far (ScaleTracker). The trusted axis never
+/// A sample more than 10 standard deviations away is implausible for an axis, with an exception for
+/// inputs that were held, after the first half minute (ScaleTracker). The trusted axis never
 /// learns implausible samples, or samples among these. When implausible samples have come for half
 /// a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of the
 /// candidate follows. The candidate is in service after inputs more than 10 standard deviations
@@ -117,7 +117,8 @@ class GuardedAxis final : public OnlineRegressor {
   Decision learn_trusted(std::span<const double> x, double y, double t);
   Decision learn_doubted(std::span<const double> x, double y, double t, const Prediction& said);
   Decision learn_in_candidate(std::span<const double> x, double y, double t);
-  bool doubtful(std::span<const double> x, double y);
+  bool plausible(std::span<const double> x, double y, double t) const;
+  bool doubtful(std::span<const double> x, double y, double t);
   void count_time(bool refused, double t);
   void doubt(double t);
   void begin_probation(double t);
@@ -140,6 +141,7 @@ class GuardedAxis final : public OnlineRegressor {
 
   ThinnedRows first_;        ///< of a young trusted axis
   double young_until_;       ///< [s]; infinite before the first sample
+  double held_from_ = 0.0;   ///< [s], from when on inputs may have been held
   ThinnedRows refused_;      ///< implausible samples: of the run, or since the candidate began
   std::int64_t run_ = 0;     ///< implausible samples that no axis learned
   std::int64_t passed_ = 0;  ///< plausible samples among these

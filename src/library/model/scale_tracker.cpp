@@ -14,10 +14,6 @@ namespace {
 
 constexpr const auto& kScaleTuning = kModelTuning.scale;
 
-bool far_beyond(double value, double largest) {
-  return std::abs(value) > kScaleTuning.beyond * largest;
-}
-
 }  // namespace
 
 ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, TermSet terms,
@@ -42,25 +38,23 @@ ScaleTracker::ScaleTracker(std::size_t inputs, const SharedSettings& settings, T
 }
 
 bool ScaleTracker::plausible(std::span<const double> x, double y) const {
-  if (far(y)) {
-    return false;
-  }
-  bool beyond = false;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    beyond = beyond || far_beyond(x[i], largest_[i]);
-  }
-  return !beyond || !far(x);
+  return !far(y) && !any_far(x, true);
 }
 
-bool ScaleTracker::far(std::span<const double> x) const {
+bool ScaleTracker::any_far(std::span<const double> x, bool but_held) const {
   // NOLINTNEXTLINE(bugprone-unchecked-optional-access): required
   const InputScaling& input = scaling_->input;
+  const ScaledInput z = input.apply(x);
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (input.whitening(i, i) == 0.0 && x[i] != input.mean[i]) {
-      return true;  // the input has never moved
+    const double whitening = input.whitening(i, i);  // 0: the input has never moved
+    const bool is_far =
+        whitening == 0.0 ? x[i] != input.mean[i] : std::abs(as_span(z)[i]) > kScaleTuning.far;
+    const bool held = whitening == 0.0 || 1.0 < kScaleTuning.held * largest_[i] * whitening;
+    if (is_far && !(but_held && held && std::abs(x[i]) <= kScaleTuning.beyond * largest_[i])) {
+      return true;
     }
   }
-  return as_vector(input.apply(x)).lpNorm<Eigen::Infinity>() > kScaleTuning.far;
+  return false;
 }
 
 bool ScaleTracker::far(double y) const {
@@ -224,7 +218,8 @@ std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs) {
     const double largest = k < inputs ? quantile(column, 0.95) : 0.0;
     for (std::size_t i = 0; i < plausible.size(); ++i) {
       const bool far = std::abs(value(i, k) - median) > most;
-      plausible[i] = plausible[i] && !(far && far_beyond(value(i, k), largest));
+      plausible[i] =
+          plausible[i] && !(far && std::abs(value(i, k)) > kScaleTuning.beyond * largest);
     }
   }
   return plausible;

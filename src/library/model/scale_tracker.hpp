@@ -20,10 +20,11 @@ namespace kelpie {
 /// times in a life. The scale never decreases, so that a calm period does not rescale the data.
 /// next() offers a new scale; the owner switches with adopt().
 ///
-/// A target more than 10 standard deviations away is implausible, and so are inputs as far away of
-/// which one exceeds three times its largest magnitude so far: the standard deviation of a command
-/// that is constant for minutes says nothing of the next step. GuardedAxis keeps implausible
-/// samples from the axis, or lets a candidate learn them.
+/// A target or input more than 10 standard deviations away is implausible, except an input that was
+/// held (deviation below a tenth of its largest magnitude so far) and stays within three times this
+/// magnitude: the standard deviation of a command that is constant for minutes, or of a cruising
+/// speed, says nothing of the next step. GuardedAxis keeps implausible samples from the axis, or
+/// lets a candidate learn them.
 class ScaleTracker {
  public:
   /// Requires inputs <= kMostInputs, and a given scaling of these inputs and terms.
@@ -41,7 +42,7 @@ class ScaleTracker {
 
   /// Whether inputs are more than 10 standard deviations away, or one moves that never did.
   /// Requires scaling().
-  bool far(std::span<const double> x) const;
+  bool far(std::span<const double> x) const { return any_far(x, false); }
 
   /// Adds a sample to the statistics, unless the scale is final. Cost O(d² + m²) for m terms.
   /// Allocates nothing.
@@ -83,6 +84,7 @@ class ScaleTracker {
   enum class Move : std::uint8_t { none, coming, adopted };
 
   bool far(double y) const;
+  bool any_far(std::span<const double> x, bool but_held) const;
   void see(std::span<const double> x);
   void see(const InputScaling& scaling);
   bool measure();

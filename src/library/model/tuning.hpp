@@ -51,9 +51,10 @@ inline constexpr struct ModelTuning {
     double far = 10.0;              ///< standard deviations of an implausible sample; by hand
     double beyond = 3.0;            ///< largest magnitudes of an implausible sample: a command at
                                     ///< a third of its range may take the whole
-    double extreme = 3.0;           ///< standard deviations: largest magnitude of a given scale
-    std::int64_t held_look = 16;    ///< held-back samples between two looks for a scale; by hand
-    std::size_t held_slice = 8;     ///< held-back samples learned per update; by hand
+    double held = 0.1;            ///< of the largest magnitude, deviation of an input that is held
+    double extreme = 3.0;         ///< standard deviations: largest magnitude of a given scale
+    std::int64_t held_look = 16;  ///< held-back samples between two looks for a scale; by hand
+    std::size_t held_slice = 8;   ///< held-back samples learned per update; by hand
   } scale;
 
   /// Probation of scales (model/guarded_axis.hpp). Seconds follow from garbage of sensors, which
@@ -70,6 +71,7 @@ inline constexpr struct ModelTuning {
     double explained = 0.5;  ///< of the variance, convinces
     double clip = 3.0;       ///< largest error counted [standard deviations]
     double look_s = 5.0;     ///< s between two looks for a scale too large
+    double held_s = 30.0;    ///< s before an input counts as held: as long as garbage lasts
     double young_s = 90.0;   ///< s of looks after the first sample
     double confirmed_young_s = 60.0;  ///< s of looks after a candidate took over
     double tiny = 0.12;               ///< standard deviations of the later half: a scale too large

@@ -28,6 +28,9 @@ std::optional<Authority> authority_of(const DynamicsModel& model) {
                         .least = std::min(range.low, 0.0),
                         .most = std::max(range.high, 0.0)});
     }
+    if (ranges.empty()) {
+      return std::nullopt;
+    }
     return Authority(*model.diagnosis(), std::move(ranges));
   } catch (const InputError&) {
     return std::nullopt;
@@ -48,7 +51,9 @@ DiagnosisResult diagnosis_of(const DynamicsModel& model) {
   }
   result.findings = model.findings();
   result.health = diagnosis->health();
-  result.authority = authority_of(model);
+  if (model.ready()) {
+    result.authority = authority_of(model);
+  }
   return result;
 }
 

@@ -32,7 +32,7 @@ class Voyage {
     std::vector<std::int64_t> recalled;
     for (const Sample& sample : wandering_stream(++seed_, samples, 0.02, plant, time_)) {
       const Decision decision = learner_.update(sample.z, sample.y, sample.t);
-      time_ = sample.t + 0.25;
+      time_ = sample.t;
       if (decision.recalled > 0) {
         recalled.push_back(decision.recalled);
         EXPECT_TRUE(decision.changed);

@@ -68,7 +68,7 @@ TEST(RealTime, NothingAllocatesOnceTheScaleIsKnown) {
         first_scale = model.mechanisms(0).scaling()->input.whitening(1, 1);
         before = testing::allocations;
       }
-      model.update(drive.x[i], drive.y[i], 0.2 * static_cast<double>(i));
+      model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
       model.predict(drive.x[i], y);
       model.predict(drive.x[i], whole);
       model.predict_with_jacobian(drive.x[i], y, jacobian);
@@ -104,7 +104,7 @@ TEST(RealTime, PastModelsFollowAScaleUnseen) {
       scale = model.mechanisms(1).scaling()->input.whitening(1, 1);
       ASSERT_GT(before.targets.size(), 10U);
     }
-    model.update(drive.x[i], drive.y[i], 0.2 * static_cast<double>(i));
+    model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
     if (i >= 3 * kPart) {
       const StoredPastModel now = oldest();
       if (now.info.until_s != before.info.until_s) {
@@ -132,7 +132,7 @@ double late_r2(DynamicsModel& model, const Drive& drive, std::size_t axis) {
   const std::size_t from = 3 * drive.x.size() / 4;
   const auto count = static_cast<double>(drive.x.size() - from);
   for (std::size_t i = 0; i < drive.x.size(); ++i) {
-    model.update(drive.x[i], drive.y[i], 0.2 * static_cast<double>(i));
+    model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
     if (i >= from) {
       const double y = drive.y[i][axis];
       wrong += std::pow(y - model.decisions()[axis].prediction.value, 2);
@@ -168,7 +168,7 @@ TEST(RealTime, ADeadlineBoundsTheWholeUpdate) {
   int most = 0;
   for (std::size_t i = 0; i < drive.x.size(); ++i) {
     asked = 0;
-    model.update(drive.x[i], drive.y[i], 0.2 * static_cast<double>(i));
+    model.update(drive.x[i], drive.y[i], 0.1 * static_cast<double>(i));
     most = std::max(most, i < kStart ? 0 : asked);
   }
   EXPECT_GT(most, 8);

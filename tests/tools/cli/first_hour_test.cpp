@@ -52,7 +52,8 @@ class FirstHour : public testing::CommandTest {
   }
   std::vector<double> r2_of(const std::string& folder) const {
     std::vector<double> values;
-    for (const nlohmann::json& axis : parsed(folder + "/result.json")["axes"]) {
+    const nlohmann::json result = parsed(folder + "/result.json");
+    for (const nlohmann::json& axis : result["axes"]) {
       values.push_back(axis["r2"]["final"]);
     }
     return values;

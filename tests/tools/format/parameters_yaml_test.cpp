@@ -19,6 +19,7 @@ TEST(ParametersYaml, HasNullWhereThereIsNoNumber) {
   found.planar.covariance = Matrix(2, 2);
   found.held_out.times_s = {0.0};
   found.held_out.r2 = {kNone, 0.5, -std::numeric_limits<double>::infinity()};
+  found.held_out.free_r2 = {kNone, kNone, kNone};
   const std::string text = format::parameters_yaml(found, Frame::flu);
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
   EXPECT_EQ(text.find("inf"), std::string::npos) << text;
