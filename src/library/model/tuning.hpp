@@ -106,7 +106,7 @@ inline constexpr struct ModelTuning {
 
   /// ChangeMonitor; docs/committee.md, Change: a prototype on training rows of 24 streams.
   struct Change {
-    double step_s = 0.199;           ///< s between two rows that count: 5 Hz, rounded; by hand
+    double step_s = 0.2;             ///< s between two rows that count; by hand
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
     double prior = 1.0;              ///< of a term without effect [samples]; by hand
     std::size_t least_errors = 64;   ///< before the usual error is known; by hand

@@ -74,7 +74,7 @@ TEST_F(LiveCommand, ToldToPlotJugglerIsWhatWasLearned) {
       EXPECT_EQ(content["health"]["messages_lost_total"], 0);
       EXPECT_TRUE(content["axis"]["udot"].contains("axis_r2_model"));
       EXPECT_TRUE(content["signal"]["u"]["signal_silent"].is_number());
-    } else {
+    } else if (content.contains("now")) {
       ++now;
       EXPECT_LE(content["now"]["lower"]["udot"], content["now"]["predicted"]["udot"]);
     }
