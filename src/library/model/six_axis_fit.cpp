@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/six_axis_fit.hpp"
+#include "model/six_axis_fit.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

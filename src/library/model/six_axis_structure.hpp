@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/model/six_axis_fit.hpp"
+#include "model/six_axis_fit.hpp"
 #include "motion/minimum_distance.hpp"
 #include "motion/motion_terms.hpp"
 

@@ -11,9 +11,9 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/model/six_axis_fit.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "log/dataset.hpp"
+#include "model/six_axis_fit.hpp"
 #include "study/certificate.hpp"
 #include "study/split.hpp"
 

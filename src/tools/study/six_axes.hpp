@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/model/six_axis_fit.hpp"
 #include "kelpie/motion/attitude.hpp"
 #include "kelpie/motion/frame.hpp"
 #include "log/dataset.hpp"
+#include "model/six_axis_fit.hpp"
 #include "study/identification.hpp"
 #include "study/split.hpp"
 #include "vehicle/parameters.hpp"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "kelpie/model/six_axis_fit.hpp"
+#include "model/six_axis_fit.hpp"
 #include "study/six_axes.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/fixtures.hpp"

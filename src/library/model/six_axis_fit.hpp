@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kelpie/motion/frame.hpp"
-#include "kelpie/motion/parameter_fit.hpp"
+#include "kelpie/motion/planar_fit.hpp"
 
 namespace kelpie {
 
