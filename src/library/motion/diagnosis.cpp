@@ -37,6 +37,17 @@ Cause unchanged(std::size_t thruster) {
   return {.kind = CauseKind::thruster, .place = thruster, .size = 1.0, .lower = 1.0, .upper = 1.0};
 }
 
+// φ(x) − φ(0).
+Eigen::VectorXd terms_beside_rest(const MotionTerms& terms, std::span<const double> x) {
+  Eigen::VectorXd phi(static_cast<Eigen::Index>(terms.size()));
+  Eigen::VectorXd rest(phi.size());
+  const std::vector<double> zeros(x.size());
+  terms.evaluate(x, {phi.data(), terms.size()});
+  terms.evaluate(zeros, {rest.data(), terms.size()});
+  phi -= rest;
+  return phi;
+}
+
 }  // namespace
 
 class Diagnosis::State {
@@ -343,12 +354,7 @@ std::span<const double> Diagnosis::State::theta_now() const {
 void Diagnosis::State::accelerations(std::span<const double> x, bool nominal,
                                      std::span<double> a) const {
   const MotionTerms& terms = monitor_.terms();
-  Eigen::VectorXd phi(static_cast<Eigen::Index>(terms.size()));
-  Eigen::VectorXd rest(phi.size());
-  const std::vector<double> zeros(x.size());
-  terms.evaluate(x, {phi.data(), terms.size()});
-  terms.evaluate(zeros, {rest.data(), terms.size()});
-  phi -= rest;
+  Eigen::VectorXd phi = terms_beside_rest(terms, x);
   for (std::size_t k = 0; !nominal && k < terms.size(); ++k) {
     for (const Cause& thruster : present_) {
       phi(static_cast<Eigen::Index>(k)) *=
@@ -365,17 +371,11 @@ void Diagnosis::State::accelerations(std::span<const double> x, bool nominal,
 
 // Of 90 % intervals, by the rows of the reference and by the present shares.
 void Diagnosis::State::half_widths(std::span<const double> x, std::span<double> widths) const {
-  const MotionTerms& terms = monitor_.terms();
-  Eigen::VectorXd phi(static_cast<Eigen::Index>(terms.size()));
-  Eigen::VectorXd rest(phi.size());
-  const std::vector<double> zeros(x.size());
-  terms.evaluate(x, {phi.data(), terms.size()});
-  terms.evaluate(zeros, {rest.data(), terms.size()});
-  phi -= rest;
+  const Eigen::VectorXd phi = terms_beside_rest(monitor_.terms(), x);
   const Eigen::MatrixXd inverse = equilibrated_inverse(monitor_.reference().gram());
   const double scatter = phi.dot(inverse * phi) * monitor_.usual_scatter();
   const Eigen::MatrixXd noise = columns_of(monitor_.fit().precision(), widths.size()).inverse();
-  const auto theta = columns_of(theta_now(), terms.size());
+  const auto theta = columns_of(theta_now(), monitor_.terms().size());
   double share_width = 0.0;
   for (const Cause& thruster : present_) {
     share_width += x[thruster.place] != 0.0 ? 0.5 * (thruster.upper - thruster.lower) : 0.0;
