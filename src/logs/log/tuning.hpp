@@ -56,6 +56,7 @@ inline constexpr struct Tuning {
   double farthest_stamps_s = 1.0;  ///< between the median offsets of two clocks; by hand
   double widest_stamps_s = 10.0;   ///< range of a clock's offset; by hand
   double least_motion = 0.1;       ///< heave's range, of the largest velocity's range; by hand
+  double dead_band_us = 25.0;      ///< to both sides of rest: Blue Robotics, Basic ESC
   int rank_by_name = 5;            ///< of velocities known only by name; by hand
   int rank_other_system = 5;       ///< added for MAVLink messages of other senders; by hand
 } kTuning{};
