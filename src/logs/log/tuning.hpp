@@ -27,7 +27,7 @@ inline constexpr struct Tuning {
     double least_windows = 20.0;     ///< by hand
     double longest_window = 1.5;     ///< of its usual length: by hand
     double least_correlation = 0.8;  ///< for a ratio that shows a mistake
-    double unrelated = 0.5;          ///< below, a shift is looked for
+    double unrelated = 0.5;          ///< in short windows, below: a shift is looked for
     double late_correlation = 0.65;  ///< at a shift that is a mistake, and …
     double late_gain = 0.4;          ///< … so much more than without; by hand
     double least_ratio = 0.6;
