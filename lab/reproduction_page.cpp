@@ -298,11 +298,11 @@ std::string curves(const StreamStudy& study, const Keys& wanted) {
       keys.emplace_back(key);
     }
   }
-  std::string text;
+  std::vector<std::string> figures;
   for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
-    text += note(study.axes[axis]) + comparison_figure(study, keys, axis);
+    figures.push_back(note(study.axes[axis]) + comparison_figure(study, keys, axis));
   }
-  return text;
+  return chart::panels(figures);
 }
 
 std::string ends_table(const StreamStudy& study) {

@@ -40,6 +40,9 @@ class BlockSplit:
         `groups`, whole numbers, are the vehicle's configurations: each is split by itself. Raises
         ValueError on too few rows or an unknown kind.
         """
+        if not isinstance(self.kind, str):
+            raise ValueError(f"kind: {self.kind!r} is no kind of split such as 'blocks' or "
+                             "'pieces'; there is one split, not several folds")
         rows = len(X)
         configurations = np.zeros(rows, dtype=int) if groups is None else np.asarray(groups)
         if configurations.shape != (rows,) or configurations.dtype.kind not in "iu":

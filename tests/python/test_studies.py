@@ -50,6 +50,8 @@ def test_blocks_are_those_of_learn(table, command, tmp_path):
     assert np.array_equal(held_out, [row for row in rows if row % 1000 // 10 % 3 == 2])
     with pytest.raises(ValueError, match="'bloks'.*did you mean 'blocks'"):
         next(kelpie.BlockSplit("bloks").split(table))
+    with pytest.raises(ValueError, match="kind: 5 is no kind of split such as 'blocks'"):
+        next(kelpie.BlockSplit(5).split(table))
     with pytest.raises(ValueError, match="configuration 0 has 100 rows"):
         next(kelpie.BlockSplit().split(table[:100]))
     with pytest.raises(ValueError, match="a whole number per row"):

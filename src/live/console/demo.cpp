@@ -40,7 +40,12 @@ log::Dataset demo_rows(double duration_s) {
   try {
     const log::Log log{
         .table = study::log_table(vehicle::simulate(demo_scenario(duration_s)), source),
-        .roles = {}};
+        .roles = {.units = {{"u", "m/s"},
+                            {"v", "m/s"},
+                            {"r", "rad/s"},
+                            {"udot", "m/s^2"},
+                            {"vdot", "m/s^2"},
+                            {"rdot", "rad/s^2"}}}};
     return log.dataset();
   } catch (const InputError& error) {
     throw InputError("--duration", error.what());

@@ -282,7 +282,7 @@ bool LiveLearner::write_model() const {
   TrainedModel trained = model.trained();
   trained.alignment = alignment_.alignment();
   file::write_file_whole(folder_ / "model.json",
-                         format::model_json(trained, {}, {.doubt = progress_.doubt}));
+                         format::model_json(trained, {.doubt = progress_.doubt}));
   return true;
 }
 

@@ -112,6 +112,21 @@ ColumnsInUse find_columns(const Table& table, const Roles& roles) {
   return columns;
 }
 
+// Of a log of several runs: how often its time begins anew within the first second of the first.
+std::size_t starts_anew(const std::vector<double>& times) {
+  std::size_t starts = 0;
+  std::optional<double> before;
+  double first = std::numeric_limits<double>::infinity();
+  for (const double now : times) {
+    if (std::isfinite(now)) {
+      first = std::min(first, before ? first : now);
+      starts += before && now < *before && std::abs(now - first) <= 1.0 ? 1 : 0;
+      before = now;
+    }
+  }
+  return starts;
+}
+
 // Looks at the rows to be skipped, too: a clock that jumped there spoils all that follow.
 void check_time(const Table& table, std::size_t column) {
   std::optional<std::size_t> before;
@@ -121,10 +136,15 @@ void check_time(const Table& table, std::size_t column) {
       continue;
     }
     if (before && now < table.columns[column][*before]) {
+      const std::size_t starts = starts_anew(table.columns[column]);
       refuse(table, table.names[column],
-             fmt::format("time runs backwards, from {} (line {}) to {} s; rows have to be in the "
-                         "order of time",
-                         table.columns[column][*before], table.lines[*before], now),
+             fmt::format("time runs backwards, from {} (line {}) to {} s; {}",
+                         table.columns[column][*before], table.lines[*before], now,
+                         starts < 2 ? "rows have to be in the order of time"
+                                    : fmt::format("time begins anew {} times: give each run a file "
+                                                  "of its own, `kelpie learn run1.csv run2.csv …`, "
+                                                  "or the rows per second by --rate",
+                                                  starts)),
              table.lines[row]);
     }
     before = row;

@@ -183,6 +183,10 @@ Dataset make_dataset(const Table& table, const Roles& roles);
 Dataset make_commands(const Table& table, const Roles& roles,
                       const std::map<std::string, double>& constants);
 
+/// The rows from `since_s` [s] on, of the log's own time. Throws InputError (file, --since) where
+/// fewer than two rows are left.
+Dataset rows_since(const Dataset& data, double since_s);
+
 /// Joins logs of one vehicle, in the given order. A log whose clock does not begin after the end of
 /// the previous log is moved to one minute after that end. Requires at least one log. Throws
 /// InputError naming the log with different inputs or targets, a rate more than 10 % off the first

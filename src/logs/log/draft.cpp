@@ -34,11 +34,25 @@ std::optional<DraftPlan> plan_of_ready(const Table& table) {
   return plan;
 }
 
+// "the fields that change are a, b, c and 20 more"; "" without any.
+std::string fields_text(const std::vector<DraftPlan::Line>& fields) {
+  constexpr std::size_t kShown = 30;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(fields.size(), kShown); ++i) {
+    names.push_back(fields[i].from);
+  }
+  const std::size_t more = fields.size() - names.size();
+  return names.empty() ? ""
+                       : "the fields that change are " + join_text(names, ", ") +
+                             (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
+
 Draft written(const DraftPlan& plan, const std::string& log, const std::string& definitions) {
   return {.toml = draft_text(plan, log, definitions),
           .taken = plan.taken,
           .remarks = plan.remarks,
-          .open = plan.open};
+          .open = plan.open,
+          .fields = plan.open.empty() ? "" : fields_text(plan.others)};
 }
 
 // What is missing may be in topics that nobody can read: "/a, /b: pkg/Type: its definition …".
@@ -63,9 +77,16 @@ LogConfig Draft::config(const std::string& source) const {
   return read_log_config(file::TomlNode::parse(toml, "the draft for " + source));
 }
 
-std::string Draft::unclear(const std::string& source) const {
-  return "the signals to use are unclear: " + join_text(open, "; ") + " (`kelpie inspect " +
-         source + " --template vehicle.toml` writes what was found; give it by --config)";
+std::string Draft::unclear(const std::string& source, const std::string& more) const {
+  std::vector<std::string> lines = open;
+  for (const std::string& line : {more, fields}) {
+    if (!line.empty()) {
+      lines.push_back(line);
+    }
+  }
+  return "the signals to use are unclear:\n  - " + join_text(lines, "\n  - ") +
+         "\n`kelpie inspect " + source +
+         " --template vehicle.toml` writes what was found; complete it, and give it by --config";
 }
 
 std::string Draft::summary(const std::string& source) const {
@@ -89,10 +110,11 @@ Draft draft_of(const bag::BagReport& report, const LogSource& source) {
   return written(plan, source.path, source.definitions);
 }
 
-Draft draft_of(const Table& table) {
+Draft draft_of(const Table& table, const std::string& time) {
   const std::optional<DraftPlan> ready = plan_of_ready(table);
-  return written(ready ? *ready : plan_draft(inspect_table(table), time_field(table)), table.source,
-                 "");
+  return written(
+      ready ? *ready : plan_draft(inspect_table(table), time.empty() ? time_field(table) : time),
+      table.source, "");
 }
 
 }  // namespace kelpie::log

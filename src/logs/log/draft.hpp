@@ -20,10 +20,12 @@ struct Draft {
   /// Reasons for an incomplete draft, a line each: equally likely signals, no signal found. Empty:
   /// the log can be learned with the draft.
   std::vector<std::string> open{};
+  std::string fields{};  ///< of an incomplete draft: what the log has that changes, for the user
 
   bool is_complete() const { return open.empty(); }
-  /// What an incomplete draft leaves open, and the remedy, as a sentence for the user.
-  std::string unclear(const std::string& source) const;
+  /// What an incomplete draft leaves open, and the remedy, for the user: a line each; `more`: what
+  /// else is open.
+  std::string unclear(const std::string& source, const std::string& more = "") const;
   /// The configuration; messages call the draft's log `source`. Requires is_complete().
   LogConfig config(const std::string& source) const;
   /// The chosen signals and the limits of the data of the log called `source`, for the user.
@@ -37,7 +39,8 @@ bag::BagReport inspect_table(const Table& table);
 /// become `open`.
 Draft draft_of(const bag::BagReport& report, const LogSource& source);
 /// Drafts a configuration for a table. A table with the usual names (guess_roles) is used directly.
-Draft draft_of(const Table& table);
+/// `time`: the column of the time; "": by its name.
+Draft draft_of(const Table& table, const std::string& time = "");
 
 /// Content of a log, and the draft.
 struct InspectedLog {

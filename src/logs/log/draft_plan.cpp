@@ -106,8 +106,8 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
   if (!plan.is_of_bag) {
     if (plan.time.empty()) {
       plan.open.emplace_back(
-          "time: no column is named t, time, stamp or the like; accelerations "
-          "take one");
+          "time: no column is named t, time, stamp or the like; accelerations take one: --time "
+          "names the column");
     } else if (const double rate = report.topics.front().rate_hz; rate < 0.01 || rate > 1e5) {
       plan.open.push_back(
           fmt::format("time: the column {} gives {:.3g} rows per second, which is hardly in s",
@@ -182,7 +182,7 @@ void ask_for_row_times(const bag::BagReport& report, const SignalRates& rates, D
   for (const bag::TopicReport& topic : report.topics) {
     const bool is_used = std::ranges::any_of(
         rates.used, [&](const CandidateColumn& column) { return column.topic == topic.name; });
-    if (is_used && topic.type == "matlab/RowsWithoutTime") {
+    if ((is_used || rates.used.empty()) && topic.type == "matlab/RowsWithoutTime") {
       plan.open.push_back("time: the rows of " + topic.name +
                           " have none; name their time by time, or write how many there are per "
                           "second by rate");
@@ -257,6 +257,9 @@ class Planner {
     const double duration_s = plan_.armed_only ? report_.autopilot.armed_s : report_.duration_s;
     plan_times(report_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, plan_);
     take_voltage();
+    if (plan_.is_of_bag && (plan_.states.empty() || plan_.commands.empty())) {
+      list_fields();
+    }
     return std::move(plan_);
   }
 
@@ -364,12 +367,30 @@ class Planner {
     const std::string name = part == Part::commands ? "commands" : "velocities";
     const auto still = still_.find(part);
     return still != still_.end()
-               ? fmt::format("{}: {} never changes, and no other signal was found", name,
-                             still->second)
+               ? fmt::format("{}: {} constant, and no other signal was found", name, still->second)
                : fmt::format("no {} are known by type or name; name them in [log.{}]", name, table);
   }
 
   bool is_asked(Part part) const { return asked_.contains(part); }
+
+  void list_fields() {
+    constexpr std::size_t kMost = 200;
+    for (const bag::TopicReport& topic : report_.topics) {
+      for (const bag::FieldRange& field : topic.fields) {
+        const CandidateColumn column{
+            .name = topic.name.empty() ? field.path : topic.name + ":" + field.path,
+            .topic = topic.name,
+            .unit = field.unit,
+            .low = field.low,
+            .high = field.high,
+            .rate_hz = topic.rate_hz};
+        if (field.finite > 0 && column.varies() && field.elements.empty() &&
+            can_be_written(column.name) && plan_.others.size() < kMost) {
+          plan_.others.push_back({{}, column.name, signal_why(column)});
+        }
+      }
+    }
+  }
 
   // The one of the least rank that moves at all; of `topic` before all others. Where two have that
   // rank both are written, as comments.
@@ -595,7 +616,27 @@ class Planner {
     if (!still.empty()) {
       plan_.remarks.push_back("constant, not taken: " + join_text(still, ", "));
     }
+    tell_motors_at_rest(one);
     plan_.commands.insert(plan_.commands.begin(), std::move(group));
+  }
+
+  void tell_motors_at_rest(const Candidate& one) {
+    double low = INFINITY;
+    double high = -INFINITY;
+    for (const CandidateColumn& column : one.columns) {
+      if (column.varies()) {
+        low = std::min(low, column.low);
+        high = std::max(high, column.high);
+      }
+    }
+    if (low >= kNeutralPulseUs - kTuning.dead_band_us &&
+        high <= kNeutralPulseUs + kTuning.dead_band_us) {
+      plan_.remarks.push_back(fmt::format(
+          "commands stay within {:g} to {:g} µs, where usual motor controllers stand still ({:g} "
+          "to {:g} µs): nothing moves the vehicle",
+          low, high, kNeutralPulseUs - kTuning.dead_band_us,
+          kNeutralPulseUs + kTuning.dead_band_us));
+    }
   }
 
   const bag::BagReport& report_;

@@ -42,6 +42,8 @@ struct DraftPlan {
   std::vector<Line> scales{};    ///< `from` is the factor, in the syntax of [log.scale]
   bool armed_only = false;
   std::vector<Line> derived{};  ///< `from` is the differentiated column
+  /// Fields of the log that change, where no velocities or no commands are known; without `name`.
+  std::vector<Line> others{};
 
   std::vector<std::string> taken{};    ///< as Draft::taken
   std::vector<std::string> remarks{};  ///< Draft::remarks

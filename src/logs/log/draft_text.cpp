@@ -134,6 +134,12 @@ std::string draft_text(const DraftPlan& plan, const std::string& log,
   if (!plan.commands.empty()) {
     text += "\n[log.commands]  # hold until the next message\n" + groups_text(plan.commands);
   }
+  if (!plan.others.empty()) {
+    text += "\n# Fields that change; lines of [log.states] and [log.commands] name the columns:\n";
+    for (const DraftPlan::Line& line : plan.others) {
+      text += comment(fmt::format("  NAME = {}  # {}", quoted(line.from), line.why));
+    }
+  }
   if (!plan.scales.empty()) {
     text += "\n[log.scale]  # about + by (value - about)\n";
     for (const DraftPlan::Line& line : plan.scales) {

@@ -45,6 +45,29 @@ void require_alike(const Dataset& first, const Dataset& next) {
 
 }  // namespace
 
+Dataset rows_since(const Dataset& data, double since_s) {
+  constexpr std::size_t kNeeded = 2;
+  const auto first = static_cast<std::size_t>(std::ranges::lower_bound(data.times_s, since_s) -
+                                              data.times_s.begin());
+  if (data.rows() < first + kNeeded) {
+    throw InputError({.file = data.source, .field = "--since"},
+                     fmt::format("{} s leaves too few rows; the log lasts from {} to {} s", since_s,
+                                 data.times_s.front(), data.times_s.back()));
+  }
+  Dataset rest = data;
+  const auto drop = [&](auto& values, std::size_t width) {
+    if (!values.empty()) {
+      values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first * width));
+    }
+  };
+  drop(rest.inputs, data.input_names.size());
+  drop(rest.targets, data.target_names.size());
+  drop(rest.times_s, 1);
+  drop(rest.configurations, 1);
+  drop(rest.held_out, 1);
+  return rest;
+}
+
 Dataset joined(std::vector<Dataset> logs) {
   Dataset all = std::move(logs.front());
   for (const Dataset& next : std::span(logs).subspan(1)) {

@@ -142,11 +142,13 @@ std::size_t rows_in(double seconds, double rate_hz) {
   return static_cast<std::size_t>(std::max(1.0, std::round(seconds * rate_hz)));
 }
 
-// The shift that makes a target follow its velocity where the target as it stands does not.
-void find_shift(const Windows& windows, std::size_t length, double rate_hz, TargetCheck& check) {
+// The shift that makes a target follow its velocity where the target as it stands does not, with
+// this correlation.
+void find_shift(const Windows& windows, std::size_t length, double rate_hz, double correlation,
+                TargetCheck& check) {
   const auto most = static_cast<std::ptrdiff_t>(rows_in(kLimits.most_late_s, rate_hz));
   const auto step = static_cast<std::ptrdiff_t>(rows_in(kLimits.late_step_s, rate_hz));
-  double best = std::max(kLimits.late_correlation, std::abs(check.correlation) + kLimits.late_gain);
+  double best = std::max(kLimits.late_correlation, std::abs(correlation) + kLimits.late_gain);
   for (std::ptrdiff_t late = -most; late <= most; late += step) {
     const auto pair = windows.compare(length, late);
     if (pair && pair->first > best && is_plain(pair->second)) {
@@ -160,19 +162,22 @@ std::optional<TargetCheck> check_target(const Dataset& data, std::size_t velocit
                                         std::size_t target) {
   TargetCheck check{.target = data.target_names[target], .velocity = data.input_names[velocity]};
   const Windows windows(data, velocity, target);
+  const auto length_of = [&](double seconds) {
+    return std::max(kLimits.least_rows, rows_in(seconds, data.rate_hz));
+  };
   bool measured = false;
-  std::size_t shortest = 0;
   for (const double seconds : kLimits.windows_s) {
-    const std::size_t length = std::max(kLimits.least_rows, rows_in(seconds, data.rate_hz));
-    shortest = shortest == 0 ? length : shortest;
-    const auto pair = windows.compare(length, 0);
+    const auto pair = windows.compare(length_of(seconds), 0);
     if (pair && std::abs(pair->first) > std::abs(check.correlation)) {
       std::tie(check.correlation, check.ratio) = *pair;
       measured = true;
     }
   }
-  if (measured && std::abs(check.correlation) < kLimits.unrelated) {
-    find_shift(windows, shortest, data.rate_hz, check);
+  // Long windows hide a shift of a second or two.
+  const std::size_t shortest = length_of(kLimits.windows_s.front());
+  const auto in_short = windows.compare(shortest, 0);
+  if (in_short && std::abs(in_short->first) < kLimits.unrelated) {
+    find_shift(windows, shortest, data.rate_hz, in_short->first, check);
   }
   return measured ? std::optional(check) : std::nullopt;
 }

@@ -325,12 +325,12 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
   if (!is_of_bag && can_be_taken(table, roles, why_not)) {
     return taken_log(std::move(table), roles);
   }
-  Draft draft = is_of_bag ? draft_of(source) : draft_of(table);
+  Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles.time);
   if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
     return taken_log(std::move(table), roles);  // who uses it says what is missing
   }
   if (!draft.is_complete()) {
-    refuse(source.path, {}, (why_not.empty() ? "" : why_not + "; ") + draft.unclear(source.path));
+    refuse(source.path, {}, draft.unclear(source.path, why_not));
   }
   const LogConfig drafted = draft.config(source.path);
   Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(roles, drafted.roles));

@@ -24,8 +24,13 @@ constexpr std::string_view kSplit = "split";
 constexpr std::array<std::string_view, 17> kPlaces{
     "depth", "lat",  "lon",  "latitude", "longitude", "altitude", "px",    "py",   "pz",
     "north", "east", "down", "easting",  "northing",  "pos_x",    "pos_y", "pos_z"};
-constexpr std::array<std::string_view, 8> kCounters{"run", "index", "idx",   "row",
-                                                    "seq", "count", "frame", "window"};
+constexpr std::array<std::string_view, 11> kCounters{"run",   "index",  "idx",      "row",
+                                                     "seq",   "count",  "frame",    "window",
+                                                     "trial", "sample", "iteration"};
+// Columns that say what somebody knows of a row, and the vehicle does not.
+constexpr std::array<std::string_view, 12> kLabels{"held",      "held_out", "fold",   "label",
+                                                   "condition", "fault",    "faults", "class",
+                                                   "phase",     "mission",  "mode",   "scenario"};
 // Of the angles heading alone is without effect: roll and pitch restore.
 constexpr std::array<std::string_view, 8> kHeadings{"heading", "psi",    "yaw",     "hdg",
                                                     "cog",     "course", "yaw_deg", "compass"};
@@ -138,8 +143,11 @@ std::string reason_against(const Table& table, std::size_t column, const Roles& 
   if (table.is_of_words(column)) {
     return fmt::format("'{}' is not a number", table.texts[column].cell);
   }
-  if (is_among(name, kCounters) || counts_rows(values)) {
+  if (is_among(name, kCounters) || name.ends_with("_step") || counts_rows(values)) {
     return "a counter";
+  }
+  if (is_among(name, kLabels) || name.ends_with("_state") || name.ends_with("_mode")) {
+    return "a label";
   }
   if (is_among(name, kPlaces)) {
     return "a position";

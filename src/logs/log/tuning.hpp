@@ -27,7 +27,7 @@ inline constexpr struct Tuning {
     double least_windows = 20.0;     ///< by hand
     double longest_window = 1.5;     ///< of its usual length: by hand
     double least_correlation = 0.8;  ///< for a ratio that shows a mistake
-    double unrelated = 0.5;          ///< below, a shift is looked for
+    double unrelated = 0.5;          ///< in short windows, below: a shift is looked for
     double late_correlation = 0.65;  ///< at a shift that is a mistake, and …
     double late_gain = 0.4;          ///< … so much more than without; by hand
     double least_ratio = 0.6;
@@ -56,6 +56,7 @@ inline constexpr struct Tuning {
   double farthest_stamps_s = 1.0;  ///< between the median offsets of two clocks; by hand
   double widest_stamps_s = 10.0;   ///< range of a clock's offset; by hand
   double least_motion = 0.1;       ///< heave's range, of the largest velocity's range; by hand
+  double dead_band_us = 25.0;      ///< to both sides of rest: Blue Robotics, Basic ESC
   int rank_by_name = 5;            ///< of velocities known only by name; by hand
   int rank_other_system = 5;       ///< added for MAVLink messages of other senders; by hand
 } kTuning{};

@@ -260,7 +260,7 @@ const kelpie = (() => {
             fill: () => colour(one.style) } : {}) };
       });
       return {
-        ...this.size(), padding: [this.description.marks.length > 0 ? 18 : 8, 18, 0, 0],
+        ...this.size(), padding: [this.description.marks.length > 0 ? 21 : 8, 18, 0, 0],
         legend: { show: false }, axes: [axis(x, true), axis(y, false)],
         scales: { x: scale(x, (u, low, high) => [low, high]), y: scale(y, y.range ??
           (fromZero ? (u, low, high) => [Math.min(0, low), uPlot.rangeNum(0, high, 0.1, true)[1]] : undefined)) },
@@ -360,7 +360,7 @@ const kelpie = (() => {
         const middle = Math.min(Math.max(at, left + half), left + width - half);
         if (middle - half < free) continue; // labels never overlap; all marks are in the table
         context.textAlign = "center";
-        context.fillText(mark.name, middle, top - 5 * ratio);
+        context.fillText(mark.name, middle, top - 8 * ratio);
         free = middle + half + 8 * ratio;
       }
       context.beginPath();

@@ -130,6 +130,7 @@ void add_compare(CLI::App& app) {
       run_compare);
   options->log.add_to(*command);
   add_split_option(*command, options->split, "held-out rows, the same for all (see `learn`)");
+  add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
   add_accept_option(*command, options->accept);
   add_file(command, "--config", options->config, "TOML file with settings of kelpie");

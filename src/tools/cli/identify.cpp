@@ -324,6 +324,7 @@ void add_identify(CLI::App& app) {
   options->log.add_to(*command);
   add_files(command, "more", options->more, "logs of the same columns, joined to the first");
   add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");
+  add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
   add_file(command, "--config", options->config, "TOML file; its [log] says what is in the log");
   add_set(command, options->set, "states=SURGE,SWAY,YAW where names don't tell");

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -96,15 +97,14 @@ std::vector<AxisScaling> saved_scales(const std::string& file, const log::Datase
 // earlier log isn't known (--from a file without them, a --memory with past models), or no row is
 // held out.
 std::vector<format::LearnedLog> all_learned(const LearnArguments& options,
+                                            const format::Origin* from,
                                             const std::vector<format::LearnedLog>& now) {
   if (!options.memory.empty() && fs::exists(options.memory)) {
     return {};
   }
   std::vector<format::LearnedLog> logs;
-  if (!options.from.empty()) {
-    if (!format::is_checkpoint(options.from)) {
-      logs = format::read_learned_logs(options.from);
-    }
+  if (from != nullptr) {
+    logs = from->learned();
     if (logs.empty()) {
       return {};
     }
@@ -201,7 +201,7 @@ bool write_results(const fs::path& folder, const study::StreamResult& result,
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
     const std::string text =
-        format::model_json(trained, learned, {unit_texts(log.plan.data), log.doubt});
+        format::model_json(trained, {unit_texts(log.plan.data), log.doubt, learned});
     warn_unless_readable("model.json", [&] {
       format::parse_model_json(text, "model.json");
       files["model.json"] = text;
@@ -243,15 +243,13 @@ file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std
 
 // What was written and what a user of a new model needs next.
 Answer answer_of(const LearnArguments& options, const study::StreamResult& result, bool has_model,
-                 bool ready, bool has_draft, const std::vector<report::NextStep>& next) {
+                 bool has_draft, const std::vector<report::NextStep>& next) {
   const fs::path folder = options.out;
   const std::string model = (folder / "model.json").string();
   Answer answer{.verdict = report::verdict_text(result),
                 .tables = options.answer.verbose ? report::result_table(result) : "",
                 .document = options.answer.json ? format::result_json(result) : "",
-                .files = {{"model", has_model ? model
-                                    : ready   ? "none"
-                                              : "none: too few samples to learn from"},
+                .files = {{"model", has_model ? model : "none"},
                           {"result", (folder / "result.json").string()},
                           {"report", (folder / "report.html").string()}},
                 .next = {}};
@@ -262,6 +260,20 @@ Answer answer_of(const LearnArguments& options, const study::StreamResult& resul
     answer.next.push_back(fmt::format("{}   ({})", step.command, step.purpose));
   }
   return answer;
+}
+
+[[noreturn]] void refuse_without_model(const study::LearnPlan& plan) {
+  const std::size_t rows = plan.split.training.size();
+  const std::int64_t least = plan.settings.shared.warmup;
+  throw InputError(
+      {.file = plan.data.source},
+      std::cmp_less(rows, least)
+          ? fmt::format("nothing was learned: {} training rows are too few for a scale, which "
+                        "takes {} (setting 'warmup')",
+                        rows, least)
+          : fmt::format("nothing was learned: fewer than {} (setting 'warmup') of {} training rows "
+                        "have inputs that move and targets that can be believed",
+                        least, rows));
 }
 
 void learn(const LearnArguments& options) {
@@ -293,11 +305,13 @@ void learn(const LearnArguments& options) {
   const format::RunState earlier =
       options.resume ? earlier_run(options.out, identity) : format::RunState{};
   DynamicsModel model = first_model(options, from, plan, !earlier.model.empty());
-  const std::vector<format::LearnedLog> learned = all_learned(options, log.learned);
+  const std::vector<format::LearnedLog> learned = all_learned(options, from, log.learned);
   const study::StreamResult result = learn_with_progress(options, plan, model, earlier, identity);
   std::vector<report::NextStep> next;
-  if (model.ready()) {
-    next = report::after_learning(options.text(options.config),
+  if (model.ready() && report::is_poor(result)) {
+    next = report::after_poor_model(options.log.source.path, options.text(options.config));
+  } else if (model.ready()) {
+    next = report::after_learning(result, options.text(options.config),
                                   (folder.path() / "model.json").string());
   }
   const bool has_model =
@@ -306,13 +320,10 @@ void learn(const LearnArguments& options) {
   if (!options.memory.empty()) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
   }
-  give(answer_of(options, result, has_model, model.ready(), !log.draft.empty(), next),
-       options.answer);
   if (!model.ready() && !result.interrupted) {
-    throw InputError({.file = plan.data.source},
-                     fmt::format("nothing was learned: {} training rows are too few for a scale",
-                                 result.training_rows));
+    refuse_without_model(plan);
   }
+  give(answer_of(options, result, has_model, !log.draft.empty(), next), options.answer);
 }
 
 }  // namespace
@@ -341,6 +352,7 @@ void add_learn(CLI::App& app) {
                    "or a model.json")
       ->capture_default_str()
       ->type_name("{first,train,FILE}");
+  add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
   add_accept_option(*command, options->accept);
   command->add_option("--validate-every", options->validate_every,

@@ -65,6 +65,9 @@ std::string tell_mistakes(const std::string& source, const std::string& field,
 log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new) {
   opened.roles.also = options.log.also;
   log::Dataset data = is_new ? new_dataset(std::move(opened)) : opened.dataset();
+  if (options.since_s) {
+    data = log::rows_since(data, *options.since_s);
+  }
   tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
   return data;
 }
@@ -189,6 +192,8 @@ std::string PlanOptions::text(const std::string& configuration) const {
 
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   study::check_align(options.align, "--align");
+  require(!options.since_s || options.more.empty(), "--since",
+          "is a time of one log; give that log alone");
   const std::optional<file::TomlNode> root =
       options.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(options.config));
   const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
@@ -220,6 +225,13 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   log.plan.from = from != nullptr ? from->file() : "";
   log.learned = format::with_held_out(std::move(log.learned), log.plan.split.held_out);
   return log;
+}
+
+void add_since_option(CLI::App& command, std::optional<double>& since_s) {
+  command.add_option(
+      "--since", since_s,
+      "leave out the rows before this time of the log [s], as before a change of the "
+      "vehicle");
 }
 
 void add_align_option(CLI::App& command, std::string& align) {

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,7 @@ struct PlanOptions {
   std::vector<std::string> more;  ///< logs joined to the first
   std::string config;             ///< configuration file, or empty
   std::vector<std::string> set;
+  std::optional<double> since_s{};  ///< --since: earlier rows are left out
   std::string split = "auto";
   std::string align = "auto";
   bool with_lags = false;             ///< LearnPlan::lags
@@ -85,6 +87,9 @@ log::Dataset new_dataset(log::Log opened);
 
 /// The option --split; `meaning` is its purpose in this command.
 void add_split_option(CLI::App& command, std::string& split, const std::string& meaning);
+
+/// --since of the commands with plan_log().
+void add_since_option(CLI::App& command, std::optional<double>& since_s);
 
 /// The option --align of commands (study::choose_alignment).
 void add_align_option(CLI::App& command, std::string& align);

@@ -254,7 +254,8 @@ void tell_far_inputs(const TrainedModel& model, const SeenRows& seen, const std:
 
 void predict(const PredictArguments& options) {
   check_output("--out", options.out, {options.source.path, options.model, options.config});
-  const TrainedModel model = read_given_model(options.model);
+  format::ModelInfo info;
+  const TrainedModel model = read_given_model(options.model, &info);
   const log::LogConfig config = log::read_log_config(options.config);
   log::Roles roles = config.roles;
   roles.inputs = model.input_names;
@@ -269,7 +270,7 @@ void predict(const PredictArguments& options) {
   }
   log::Log log = open_log(options.source, config, roles);
   log::Table& table = log.table;
-  const KnownRows known = known_rows(model, table, format::read_learned_logs(options.model));
+  const KnownRows known = known_rows(model, table, info.learned);
   const SeenRows seen = seen_rows(model, table, log.roles);
   tell_far_inputs(model, seen, options.source.path);
   const std::vector<NewColumn> columns = new_columns(model, seen, table.rows(), options.jacobian);

@@ -211,6 +211,7 @@ void add_tune(CLI::App& app) {
   add_files(command, "more", options->more,
             "further logs with the same targets; each counts alike, as a stream of its own");
   add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
+  add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
   add_accept_option(*command, options->accept);
   command->add_option("--only", options->only,

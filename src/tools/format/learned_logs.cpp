@@ -105,12 +105,4 @@ std::vector<LearnedLog> read_learned(const file::JsonNode& node) {
   return logs;
 }
 
-std::vector<LearnedLog> read_learned_logs(const std::filesystem::path& file) {
-  const std::string text = file::read_content(file, "a model.json as `kelpie learn` writes it",
-                                              file::kTuning.document_bytes);
-  const file::Json json = file::parse_json(text, file.string());
-  const file::JsonNode root(json, file.string(), "");
-  return json.contains("learned") ? read_learned(root["learned"]) : std::vector<LearnedLog>{};
-}
-
 }  // namespace kelpie::format

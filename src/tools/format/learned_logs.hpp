@@ -42,8 +42,4 @@ file::Json learned_json(std::span<const LearnedLog> logs);
 /// Reads the output of learned_json(). Throws InputError (file, key) on other content.
 std::vector<LearnedLog> read_learned(const file::JsonNode& node);
 
-/// The learned logs of a model.json; empty without the key. Throws as read_model() does on invalid
-/// JSON.
-std::vector<LearnedLog> read_learned_logs(const std::filesystem::path& file);
-
 }  // namespace kelpie::format

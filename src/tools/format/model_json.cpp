@@ -101,16 +101,15 @@ ColumnUnits units_in(const JsonNode& node, const Json& json) {
 
 }  // namespace
 
-std::string model_json(const TrainedModel& model, std::span<const LearnedLog> learned,
-                       const ModelInfo& info) {
+std::string model_json(const TrainedModel& model, const ModelInfo& info) {
   Json json{{"format", kModelFormat},
             {"version", kModelVersion},
             {"inputs", model.input_names},
             {"settings", file::object(model.settings.values())},
             {"alignment", alignment_json(model.alignment)},
             {"axes", file::list(model.axes, axis_json)}};
-  if (!learned.empty()) {
-    json["learned"] = learned_json(learned);
+  if (!info.learned.empty()) {
+    json["learned"] = learned_json(info.learned);
   }
   if (!info.units.empty()) {
     json["units"] = info.units;
@@ -125,14 +124,13 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
   const Json json = file::parse_json(text, source);
   TrainedModel model = trained_model(json, source);
   const JsonNode root(json, source, "");
-  if (json.contains("learned")) {
-    static_cast<void>(read_learned(root["learned"]));  // only so that what is wrong is named
-  }
-  const ModelInfo read{
+  ModelInfo read{
       .units = json.contains("units") ? units_in(root["units"], json["units"]) : ColumnUnits{},
-      .doubt = json.contains("doubt") ? root["doubt"].text() : ""};
+      .doubt = json.contains("doubt") ? root["doubt"].text() : "",
+      .learned =
+          json.contains("learned") ? read_learned(root["learned"]) : std::vector<LearnedLog>{}};
   if (info != nullptr) {
-    *info = read;
+    *info = std::move(read);
   }
   return model;
 }

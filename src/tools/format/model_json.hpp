@@ -3,8 +3,8 @@
 
 #include <filesystem>
 #include <map>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "format/learned_logs.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -18,12 +18,12 @@ using ColumnUnits = std::map<std::string, std::string>;
 struct ModelInfo {
   ColumnUnits units{};
   std::string doubt{};  ///< what cannot be right in the learned targets; empty: no reason
+  std::vector<LearnedLog> learned{};  ///< empty: not known
 };
 
-/// A trained model as JSON text (docs/model.md) with its learned logs, and what is known of units
-/// and doubt. Numbers have the shortest form that reads back to the same value. Ends in a newline.
-std::string model_json(const TrainedModel& model, std::span<const LearnedLog> learned = {},
-                       const ModelInfo& info = {});
+/// A trained model as JSON text (docs/model.md) with what is known of units, doubt and learned
+/// logs. Numbers have the shortest form that reads back to the same value. Ends in a newline.
+std::string model_json(const TrainedModel& model, const ModelInfo& info = {});
 
 /// Reads the output of model_json(), with `info` where wanted; predictions are equal to the last
 /// bit. Throws InputError (`source`, key) on invalid JSON, another format, a newer version, a

@@ -12,7 +12,8 @@
 namespace kelpie::format {
 namespace {
 
-std::variant<TrainedModel, SavedModel> read(const std::filesystem::path& file) {
+std::variant<TrainedModel, SavedModel> read(const std::filesystem::path& file,
+                                            std::vector<LearnedLog>& learned) {
   if (std::error_code none; std::filesystem::is_directory(file, none)) {
     throw InputError({.file = file.string(), .line = 0, .field = {}},
                      "is a folder; name the model.json or the checkpoint.kelpie in it");
@@ -20,7 +21,10 @@ std::variant<TrainedModel, SavedModel> read(const std::filesystem::path& file) {
   if (is_checkpoint(file)) {
     return saved_model(read_checkpoint(file));
   }
-  return read_model(file);
+  ModelInfo info;
+  TrainedModel model = read_model(file, &info);
+  learned = std::move(info.learned);
+  return model;
 }
 
 // A scaling of this size, to be loaded over.
@@ -34,7 +38,8 @@ AxisScaling any_scaling(std::size_t inputs, std::size_t terms) {
 
 }  // namespace
 
-Origin::Origin(const std::filesystem::path& file) : file_(file.string()), saved_(read(file)) {
+Origin::Origin(const std::filesystem::path& file)
+    : file_(file.string()), saved_(read(file, learned_)) {
   if (const auto* const saved = std::get_if<SavedModel>(&saved_)) {
     inputs_ = saved->inputs;
     targets_ = saved->targets;

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "format/learned_logs.hpp"
 #include "format/run_checkpoint.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -24,6 +25,8 @@ class Origin {
   const std::vector<std::string>& targets() const { return targets_; }
   const ModelSettings& settings() const { return settings_; }
   const Alignment& alignment() const { return alignment_; }
+  /// The learned logs that a model.json names; empty: not known.
+  const std::vector<LearnedLog>& learned() const { return learned_; }
 
   /// Whether the scale was given, and is therefore fixed.
   bool scale_given() const;
@@ -38,6 +41,7 @@ class Origin {
 
  private:
   std::string file_;
+  std::vector<LearnedLog> learned_;
   std::variant<TrainedModel, SavedModel> saved_;
   std::vector<std::string> inputs_;
   std::vector<std::string> targets_;

@@ -18,10 +18,24 @@ constexpr const char* kXmlHead = R"(<?xml version="1.0"?>
 <!-- Constant forces in the log (surge, sway, heave in N, roll, pitch, yaw in N m; FRD): {forces}; not in this file -->
 )";
 
+constexpr const char* kGazeboInertia = R"(      <inertial>
+        <pose>{gravity_flu} 0 0 0</pose>
+        <mass>{mass}</mass>
+        <inertia>
+          <ixx>{ixx}</ixx>
+          <iyy>{iyy}</iyy>
+          <izz>{izz}</izz>
+          <ixy>{ixy_flu}</ixy>
+          <ixz>{ixz_flu}</ixz>
+          <iyz>{iyz}</iyz>
+        </inertia>
+)";
+
 // A file of XML: head and body of the vehicle, the thrusters, the end.
 std::string xml_file(const IdentifiedVehicle& vehicle, const std::string& source, const char* body,
                      const char* thruster, const char* end) {
-  const Fields fields = vehicle_fields(vehicle, source);
+  Fields fields = vehicle_fields(vehicle, source);
+  fields.push_back(fmt::arg("gazebo_inertia", fmt::vformat(kGazeboInertia, fields)));
   std::string text = fmt::vformat(kXmlHead, fields) + fmt::vformat(body, fields);
   for (const IdentifiedThruster& one : vehicle.thrusters) {
     text += fmt::vformat(thruster, thruster_fields(vehicle, one));
@@ -37,18 +51,7 @@ constexpr const char* kGazebo =
 <sdf version="1.10">
   <model name="identified">
     <link name="base_link">
-      <inertial>
-        <pose>{gravity_flu} 0 0 0</pose>
-        <mass>{mass}</mass>
-        <inertia>
-          <ixx>{ixx}</ixx>
-          <iyy>{iyy}</iyy>
-          <izz>{izz}</izz>
-          <ixy>{ixy_flu}</ixy>
-          <ixz>{ixz_flu}</ixz>
-          <iyz>{iyz}</iyz>
-        </inertia>
-        <fluid_added_mass>
+{gazebo_inertia}        <fluid_added_mass>
 {added_sdf}        </fluid_added_mass>
       </inertial>
     </link>
@@ -70,18 +73,7 @@ constexpr const char* kGazeboPlugin =
 <sdf version="1.9">
   <model name="identified">
     <link name="base_link">
-      <inertial>
-        <pose>{gravity_flu} 0 0 0</pose>
-        <mass>{mass}</mass>
-        <inertia>
-          <ixx>{ixx}</ixx>
-          <iyy>{iyy}</iyy>
-          <izz>{izz}</izz>
-          <ixy>{ixy_flu}</ixy>
-          <ixz>{ixz_flu}</ixz>
-          <iyz>{iyz}</iyz>
-        </inertia>
-      </inertial>
+{gazebo_inertia}      </inertial>
     </link>
     <!-- buoyancy: the world's gz::sim::systems::Buoyancy, with a volume of {volume} m^3 -->
     <plugin filename="gz-sim-hydrodynamics-system" name="gz::sim::systems::Hydrodynamics">

@@ -86,10 +86,13 @@ std::vector<Ranked> ranking(const study::Comparison& comparison) {
   return ranked;
 }
 
-// What to use, in one sentence.
-std::string advice_headline(const study::Comparison& comparison) {
-  const std::string advice = settings_advice(comparison);
-  return advice.empty() ? recommendation(comparison).front() : advice;
+// What to use, as a headline of one sentence and what follows.
+std::string advice_opening(const study::Comparison& comparison) {
+  const std::string settings = settings_advice(comparison);
+  const std::string advice = settings.empty() ? recommendation(comparison).front() : settings;
+  const std::size_t end = std::min(advice.find(". "), advice.size() - 1) + 1;
+  return chart::heading(1, advice.substr(0, end)) +
+         (end < advice.size() ? chart::paragraph("lead", advice.substr(end + 1)) : "");
 }
 
 }  // namespace
@@ -209,8 +212,7 @@ std::string comparison_html(const study::Comparison& comparison) {
   const study::StreamResult& kelpie = comparison.contests.front().stream;
   const std::string log = std::filesystem::path(kelpie.source).filename().string();
   std::string opening = chart::paragraph("over", "kelpie beside simpler models on " + log) +
-                        chart::heading(1, advice_headline(comparison)) +
-                        chart::html_table(ranked_view(comparison));
+                        advice_opening(comparison) + chart::html_table(ranked_view(comparison));
   std::string advice;
   for (const std::string& paragraph : recommendation(comparison)) {
     advice += chart::paragraph("", paragraph);

@@ -138,11 +138,36 @@ chart::TextTable correlations_view(const study::Identification& found) {
   return table;
 }
 
+// The stretch of kTuning.first_window_s in which the values reach farthest.
+chart::Extent liveliest(const std::vector<double>& times, const std::vector<double>& values) {
+  chart::Extent best{times.front(), times.back()};
+  double widest = -1.0;
+  for (double from = times.front(); from < times.back(); from += 0.5 * kTuning.first_window_s) {
+    const auto place = [&](double time) {
+      return std::ranges::lower_bound(times, time) - times.begin();
+    };
+    const auto [low, high] = std::minmax_element(
+        values.begin() + place(from), values.begin() + place(from + kTuning.first_window_s));
+    if (low != high && *high - *low > widest) {
+      widest = *high - *low;
+      best = {from, from + kTuning.first_window_s};
+    }
+  }
+  return best;
+}
+
 std::string axis_figure(const study::Identification& found, std::size_t axis) {
   const study::HeldOutFit& held_out = found.held_out;
-  chart::Figure figure({.label = "time in s"}, {.label = found.targets[axis]},
-                       "Acceleration of held-out rows, measured and by the identified vehicle");
+  const std::size_t straight =
+      found.targets.size() == kPlanarAxes ? kPlanarAxes - 1 : found.targets.size() / 2;
+  chart::Figure figure(
+      {.label = "time in s"},
+      {.label = found.targets[axis] + (axis < straight ? " in m/s²" : " in rad/s²")},
+      "Acceleration of held-out rows, measured and by the identified vehicle");
   figure.link("time");
+  if (!held_out.times_s.empty()) {
+    figure.begin_at(liveliest(held_out.times_s, held_out.measured.front()));
+  }
   const std::size_t shown = std::min(held_out.times_s.size(), kMostShown);
   const auto points = [&](const std::vector<double>& values) {
     std::vector<chart::Point> line;

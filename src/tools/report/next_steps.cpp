@@ -1,12 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/next_steps.hpp"
 
-namespace kelpie::report {
+#include <fmt/format.h>
 
-std::vector<NextStep> after_learning(const std::string& log, const std::string& model) {
-  return {{"kelpie rollout " + log + " --model " + model, "how the error grows in open loop"},
-          {"kelpie predict LOG --model " + model, "predictions for another log"},
-          {"kelpie learn LOG --from " + model, "goes on with another log of the vehicle"}};
+#include <algorithm>
+#include <optional>
+#include <ranges>
+
+#include "report/tuning.hpp"
+
+namespace kelpie::report {
+namespace {
+
+// The time of the last named change that enough rows follow.
+std::optional<double> last_change_s(const study::StreamResult& result) {
+  if (result.axes.empty() || result.axes.front().one_step.time_s.empty()) {
+    return std::nullopt;
+  }
+  const std::vector<double>& times = result.axes.front().one_step.time_s;
+  for (const Finding& finding : std::views::reverse(result.diagnosis.findings)) {
+    if (finding.state == FindingState::named) {
+      const auto since = std::ranges::lower_bound(times, finding.since_s);
+      return times.end() - since >= kTuning.rows_since ? std::optional(finding.since_s)
+                                                       : std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<NextStep> after_learning(const study::StreamResult& result, const std::string& log,
+                                     const std::string& model) {
+  std::vector<NextStep> next;
+  if (const std::optional<double> since_s = last_change_s(result)) {
+    next.push_back({fmt::format("kelpie learn {} --since {:.10g} --out out/since", log, *since_s),
+                    "the changed vehicle alone: compare R²"});
+  }
+  next.push_back(
+      {"kelpie rollout " + log + " --model " + model, "how the error grows in open loop"});
+  next.push_back({"kelpie predict LOG --model " + model, "predictions for another log"});
+  next.push_back({"kelpie learn LOG --from " + model, "goes on with another log of the vehicle"});
+  return next;
+}
+
+std::vector<NextStep> after_poor_model(const std::string& file, const std::string& log) {
+  return {{"kelpie inspect " + file, "what each column holds, and how often"},
+          {"kelpie compare " + log, "whether a simpler model predicts better"}};
 }
 
 }  // namespace kelpie::report

@@ -385,7 +385,7 @@ std::string cheaper(const study::TuneResult& result, std::size_t axis,
   return &least == &best
              ? ""
              : fmt::format(
-                   "{} scores {} with {} iterations of the solver per row; the best, {} "
+                   "The preset {} scores {} with {} iterations of the solver per row; the best, {} "
                    "with {}.",
                    name_of(least, result, axis), chart::decimal(least.score),
                    chart::significant(least.iterations_per_row), chart::decimal(best.score),

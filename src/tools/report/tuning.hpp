@@ -17,13 +17,14 @@ inline constexpr struct Tuning {
   double very_good_r2 = 0.9;         ///< words of a verdict
   double good_r2 = 0.7;
   double fair_r2 = 0.4;
-  std::size_t longest_log = 60;   ///< characters of a log's name in a verdict
-  double told_horizon_s = 10.0;   ///< the longest horizon that a verdict tells in words
-  std::size_t most_changes = 6;   ///< lines about changes of the vehicle in a verdict
-  double clear_gain = 0.05;       ///< of R², by the commands, in the first look at a log
-  double structure_loss = 0.05;   ///< of R²: a larger loss to untied terms is a warning
-  double poor_r2 = 0.5;           ///< R² of an identified axis below is a warning
-  double high_correlation = 0.9;  ///< of the errors of two parameters; listed from here on
+  std::size_t longest_log = 60;     ///< characters of a log's name in a verdict
+  double told_horizon_s = 10.0;     ///< the longest horizon that a verdict tells in words
+  std::ptrdiff_t rows_since = 500;  ///< after a change, that are worth learning alone
+  std::size_t most_changes = 6;     ///< lines about changes of the vehicle in a verdict
+  double clear_gain = 0.05;         ///< of R², by the commands, in the first look at a log
+  double structure_loss = 0.05;     ///< of R²: a larger loss to untied terms is a warning
+  double poor_r2 = 0.5;             ///< R² of an identified axis below is a warning
+  double high_correlation = 0.9;    ///< of the errors of two parameters; listed from here on
 } kTuning;
 
 }  // namespace kelpie::report

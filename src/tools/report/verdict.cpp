@@ -157,6 +157,13 @@ std::vector<std::string> warning_lines(const study::StreamResult& result) {
   return lines;
 }
 
+bool is_poor(const study::StreamResult& result) {
+  return !warning_lines(result).empty() ||
+         std::ranges::all_of(result.axes, [](const study::AxisResult& axis) {
+           return axis.r2_final <= kTuning.clear_r2;
+         });
+}
+
 std::string verdict_of(const study::AxisResult& axis) {
   const std::string quality = quality_of(axis);
   if (!(axis.r2_final > kTuning.clear_r2)) {

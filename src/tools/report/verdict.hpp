@@ -26,6 +26,9 @@ std::vector<std::string> vehicle_lines(const study::StreamResult& result);
 /// Reasons against any trust in the model: nothing learned, commands without effect.
 std::vector<std::string> warning_lines(const study::StreamResult& result);
 
+/// Whether the model is of no use: a warning, or no axis predicted better than by the mean.
+bool is_poor(const study::StreamResult& result);
+
 /// How good an axis is, in words: "very good", "least squares is better by 0.06", "no better than
 /// the mean", "the commands say nothing".
 std::string verdict_of(const study::AxisResult& axis);

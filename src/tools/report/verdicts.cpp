@@ -142,7 +142,8 @@ std::string rollout_verdict(const study::OpenLoopResult& result) {
   chart::TextTable table{
       .title = {}, .head = {"after", "starts"}, .rows = {}, .left = {0}, .whole = true};
   for (std::size_t i = 0; i < result.states.size(); ++i) {
-    const std::string unit = result.units[i].empty() ? "" : " [" + result.units[i] + "]";
+    const std::string unit =
+        result.units[i].empty() ? "" : " [" + chart::unit_text(result.units[i]) + "]";
     table.head.push_back("error of\n" + chart::shortened(result.states[i], chart::kLongestName) +
                          unit);
   }
@@ -167,8 +168,9 @@ std::string rollout_verdict(const study::OpenLoopResult& result) {
       told_s = horizon.seconds;
       within.clear();
       for (std::size_t i = 0; i < horizon.rms.size(); ++i) {
-        within.push_back(fmt::format("{} within {}{}", result.states[i], rounded(horizon.rms[i]),
-                                     result.units[i].empty() ? "" : " " + result.units[i]));
+        within.push_back(
+            fmt::format("{} within {}{}", result.states[i], rounded(horizon.rms[i]),
+                        result.units[i].empty() ? "" : " " + chart::unit_text(result.units[i])));
       }
     }
   }

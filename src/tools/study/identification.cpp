@@ -10,6 +10,8 @@
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "kelpie/model/settings.hpp"
+#include "log/plausibility.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "study/metrics.hpp"
@@ -70,6 +72,17 @@ void require_numbers(const log::Dataset& data, const PlanarFit& fit) {
   }
 }
 
+// What is known of the mistake; else how columns are converted.
+std::string remedy_for(const log::Dataset& data, const std::string& velocity) {
+  for (const log::Mistake& mistake : log::target_mistakes(data, SharedSettings().states)) {
+    if (mistake.is_refused) {
+      return log::mistake_text(mistake);
+    }
+  }
+  return fmt::format("--units converts a column to the SI, as in --units {}=deg/s or --units t=ms",
+                     velocity);
+}
+
 void require_accelerations(const log::Dataset& data, const PlanarColumns& columns,
                            const PlanarRows& rows, const std::vector<std::size_t>& picked) {
   std::vector<double> accelerations;
@@ -83,11 +96,13 @@ void require_accelerations(const log::Dataset& data, const PlanarColumns& column
     const auto [correlation, slope] = checks[axis];
     if (correlation < kTuning.identification.least_correlation ||
         slope < kTuning.identification.least_slope || slope > kTuning.identification.most_slope) {
+      const std::string& velocity = data.input_names[columns.velocities[axis]];
       throw InputError(
           {.file = data.source, .line = 0, .field = data.target_names[columns.targets[axis]]},
-          fmt::format("isn't the acceleration of '{}' [its unit/s]: over windows of 5 s its "
-                      "correlation with that one's slope is {:.2f}, its size {:.2f} times as large",
-                      data.input_names[columns.velocities[axis]], correlation, slope));
+          fmt::format("isn't the acceleration of '{0}' [unit of {0}/s]: over windows of 5 s the "
+                      "correlation with the slope of '{0}' is {1:.2f}, the size {2:.2f} times as "
+                      "large; {3}",
+                      velocity, correlation, slope, remedy_for(data, velocity)));
     }
   }
 }

@@ -132,6 +132,37 @@ TEST(Draft, KnowsWherePulsesOfServosRest) {
   EXPECT_FALSE(is_pulse());  // to one side: a servo's end may be its rest
 }
 
+TEST(Draft, PulsesThatNeverLeaveTheDeadBandAreTold) {
+  const auto remarks = [](double reach_us) {
+    log::Table table = table_of("t,u,v,r,pwm1,pwm2");
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      for (const std::size_t pwm : {4, 5}) {
+        table.columns[pwm][row] =
+            1500.0 + std::round(reach_us * std::tanh(table.columns[pwm][row]));
+      }
+    }
+    return join_text(log::draft_of(table).remarks, "\n");
+  };
+  const std::string told = "usual motor controllers stand still (1475 to 1525 µs)";
+  EXPECT_NE(remarks(20.0).find(told), std::string::npos) << remarks(20.0);
+  EXPECT_EQ(remarks(200.0).find(told), std::string::npos) << remarks(200.0);
+}
+
+TEST(Draft, WhereNothingIsKnownItListsTheFieldsThatChange) {
+  const log::Draft found = draft({topic("/state", "pkg/msg/State", {"forward", "push"})});
+  EXPECT_NE(found.unclear("mission").find(
+                "\n  - the fields that change are /state:forward, /state:push\n"),
+            std::string::npos)
+      << found.unclear("mission");
+  EXPECT_NE(found.toml.find("#   NAME = \"/state:push\""), std::string::npos) << found.toml;
+}
+
+TEST(Draft, TheColumnOfTheTimeMayBeNamed) {
+  const log::Table table = table_of("t_bag,u,v,r,n1,n2");
+  EXPECT_TRUE(is_open_about(log::draft_of(table), "--time names the column"));
+  EXPECT_EQ(log::draft_of(table, "t_bag").config("log.csv").roles.time, "t_bag");
+}
+
 TEST(Draft, WhereTwoReadingsAreLikelyItAsks) {
   EXPECT_TRUE(is_open_about(log::draft_of(table_of("t,u,r,pwm1,pwm2,rpm1,rpm2")),
                             "commands: pwm1, pwm2, or rpm1, rpm2: which of them?"));

@@ -203,7 +203,7 @@ TEST_F(ReadLog, TheReachOfABagIsThatOfItsRows) {
 TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
   const std::string states = "[log.states]\nx = \"/cmd:linear.x\"\n";
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"[log]\nrate = 10\n", "zstd.mcap: the signals to use are unclear: no velocities"},
+      {"[log]\nrate = 10\n", "zstd.mcap: the signals to use are unclear:\n  - no velocities"},
       {states, "c.toml: log.rate: is missing"},
       {"[log]\nrat = 10\n" + states, "c.toml:2: log.rat: unknown key (did you mean 'rate'?)"},
       {"[logs]\nrate = 10\n", "c.toml:1: logs: unknown table (did you mean 'log'?)"},

@@ -119,8 +119,29 @@ TEST_F(FirstHour, ALogTooShortForAModelEndsWithCodeTwo) {
   EXPECT_NE(outcome.err.find("nothing was learned: 40 training rows are too few for a scale"),
             std::string::npos)
       << outcome.err;
+  EXPECT_EQ(outcome.out, "");
   EXPECT_FALSE(exists("out/model.json"));
   EXPECT_NE(content("out/report.html").find("Nothing was learned"), std::string::npos);
+}
+
+// D8: the next command learns the changed vehicle alone, and surge is as good as before.
+TEST_F(FirstHour, TheChangedVehicleIsLearnedAlone) {
+  simulate("diagnosis.toml", "log.csv");
+  const Outcome outcome = succeeded(run("learn log.csv --out out"));
+  EXPECT_NE(outcome.out.find("kelpie learn log.csv --since 1500.5 --out out/since"),
+            std::string::npos)
+      << outcome.out;
+  const Outcome since = succeeded(run("learn log.csv --since 1500.5 --out since"));
+  EXPECT_NE(since.out.find("no change of the vehicle was found"), std::string::npos) << since.out;
+  for (const double r2 : r2_of("since")) {
+    EXPECT_GT(r2, 0.98);
+  }
+  const Outcome late = run("learn log.csv --since 5000 --out late");
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_NE(late.err.find("--since: 5000 s leaves too few rows; the log lasts from"),
+            std::string::npos)
+      << late.err;
+  EXPECT_EQ(run("learn log.csv log.csv --since 5 --out late").exit_code, 2);
 }
 
 // D7, D11: the finding, the thrusters' health and the page say the same, long after the damage.

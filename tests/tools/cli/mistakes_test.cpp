@@ -147,6 +147,8 @@ TEST_F(Mistakes, Clocks) {
   expect(2, without_time(), "",
          "time: is unknown; name the time column with --time or give the "
          "rows per second with --rate");
+  expect(2, csv([](Row& row) { row.t = std::fmod(row.t, 50.0); }), "",
+         "time begins anew 5 times: give each run a file of its own");
   expect(2, csv(), "--rate 5 --time t", "--time excludes --rate");
   expect(2, csv(), "--rate -1", "--rate: '-1' has to be a number from 1e-06 to 1e+06");
   const std::string shuffled = first_lines(csv(), 500) + "3,0.1,0.1,0.1,0.1,0.1,0.1\n";
@@ -167,6 +169,8 @@ TEST_F(Mistakes, Columns) {
   expect(0, csv([](Row&) {}, ",depth", of_row(9.0)), "",
          "depth: is left out of the inputs: a position");
   expect(0, csv([](Row&) {}, ",run", of_row(9.0)), "", "run: is left out of the inputs: a counter");
+  expect(0, csv([](Row&) {}, ",condition", of_row(2.0)), "",
+         "condition: is left out of the inputs: a label");
   expect(0, csv([](Row&) {}, ",heading", of_row(3.0)), "",
          "heading: is left out of the inputs: a heading");
   expect(0, csv([](Row&) {}, ",battery_v", of_row(16.0)), "",
@@ -217,6 +221,10 @@ TEST_F(Mistakes, CommandsThatMoveNothing) {
         }));
   expect_of(0, "learn log.csv --set preset=paper buffer=50 --out out",
             "WARNING: these commands do not move this vehicle");
+  // No model to go on with: a look at the log comes next.
+  const Outcome outcome = run("learn log.csv --set preset=paper buffer=50 --out out");
+  EXPECT_NE(outcome.out.find("kelpie inspect log.csv"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("kelpie rollout"), std::string::npos) << outcome.out;
 }
 
 }  // namespace

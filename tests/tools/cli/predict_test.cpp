@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
+#include <fstream>
+#include <thread>
 
 #include "cli/command.hpp"
 #include "log/dataset.hpp"
@@ -56,6 +59,20 @@ TEST_F(Predict, TakesTheModelThatLearnWritesWhereNoneIsNamed) {
   testing::succeeded(run("rollout log.csv"));
   testing::succeeded(run("export --c model.c"));
   EXPECT_TRUE(exists("model.c"));
+}
+
+TEST_F(Predict, AModelMayBeAPipe) {
+  testing::succeeded(predict("log.csv"));
+  const std::string from_file = content("p.csv");
+  const std::string model = content("out/model.json");
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  {
+    const std::jthread writer([&] { std::ofstream(folder_ / "pipe") << model; });
+    testing::succeeded(run("predict log.csv --model pipe --out q.csv"));
+  }
+  EXPECT_EQ(content("q.csv"), from_file);
+  const std::jthread writer([&] { std::ofstream(folder_ / "pipe") << model; });
+  testing::succeeded(run("learn log.csv --from pipe --out next"));
 }
 
 TEST_F(Predict, WordsStayAsTheyWereAndNoInputIsReplaced) {

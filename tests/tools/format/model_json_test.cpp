@@ -218,13 +218,13 @@ TEST(ModelJson, UnitsAndDoubtAreKeptAndWrongOnesNamed) {
   const TrainedModel model = trained(drive(3, 200), "diagonal");
   const format::ModelInfo info{.units = {{"u", "m s^-1"}, {"udot", "m s^-2"}},
                                .doubt = "udot is in g"};
-  testing::write_text(folder / "m.json", format::model_json(model, {}, info));
+  testing::write_text(folder / "m.json", format::model_json(model, info));
   format::ModelInfo read;
   format::read_model(folder / "m.json", &read);
   EXPECT_EQ(read.units, info.units);
   EXPECT_EQ(read.doubt, info.doubt);
   EXPECT_EQ(format::model_json(format::read_model(folder / "m.json")), format::model_json(model));
-  auto bad = nlohmann::json::parse(format::model_json(model, {}, info));
+  auto bad = nlohmann::json::parse(format::model_json(model, info));
   bad["doubt"] = 3;
   EXPECT_EQ(refusal(bad), "m.json: doubt: is not a text");
   bad.erase("doubt");

@@ -80,7 +80,7 @@ TEST(ComparisonReport, BeginsWithTheAdviceAndARankedTable) {
   EXPECT_EQ(ranked.rows[1][0], "least squares");
   EXPECT_EQ(ranked.rows[2].back(), "0.100");
   const std::string page = report::comparison_html(comparison(kFinals));
-  EXPECT_LT(page.find("No gain: keep the defaults"), page.find("<table"));
+  EXPECT_LT(page.find(">No gain: keep the defaults.</h1>"), page.find("<table")) << "one sentence";
 }
 
 }  // namespace
