@@ -32,6 +32,7 @@ MESSAGES = {
 NAMES = {number: name for name, (number, _, _) in MESSAGES.items()}
 SET_MESSAGE_INTERVAL = 511
 PARAMETERS = {"FRAME_CONFIG": 1.0, **{f"SERVO{n}_FUNCTION": 32.0 + n for n in range(1, 7)},
+              **{f"SERVO{n}_FUNCTION": 0.0 for n in range(7, 17)},
               **{f"MOT_{n}_DIRECTION": 1.0 for n in range(1, 7)}}
 HEALTH = ("msgs_lost", "rows_lost", "learned", "frozen", "delay_ms")  # beside predictions
 

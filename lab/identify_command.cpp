@@ -149,14 +149,16 @@ IdentifyStudy study_identification(const vehicle::Scenario& first, std::size_t s
   return study;
 }
 
+// Of a truth of 0 in the parameter's own unit.
 std::string share_of(double part, double whole) {
-  return std::abs(whole) > 1e-9 ? fmt::format("{:.2f}", 100.0 * part / std::abs(whole)) : "–";
+  return std::abs(whole) > 1e-9 ? fmt::format("{:.2f} %", 100.0 * part / std::abs(whole))
+                                : chart::significant(part);
 }
 
 std::string study_text(const IdentifyStudy& study) {
   chart::TextTable table{"Parameters over all seeds",
-                         {"parameter", "truth", "mean", "rms error\n%", "worst\n%",
-                          "mean standard\nerror %", "in the 90 %\ninterval"},
+                         {"parameter", "truth", "mean", "rms error", "worst",
+                          "mean standard\nerror", "in the 90 %\ninterval"},
                          {}};
   for (const IdentifiedParameter& row : study.parameters) {
     table.rows.push_back(
@@ -174,7 +176,9 @@ std::string study_text(const IdentifyStudy& study) {
 void run_identify_study(const IdentifyStudyArguments& options) {
   require(options.seeds > 0, "--seeds", "has to be > 0");
   const vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
-  vehicle::require_plane(scenario.vehicle);
+  if (scenario.log != vehicle::LogKind::six) {
+    vehicle::require_plane(scenario.vehicle);
+  }
   require(scenario.configurations.size() == 1, "scenario", "has to have one configuration");
   const IdentifyStudy study = run_watched("identifying", [&](const auto& keep_going) {
     return study_identification(scenario, options.seeds, keep_going);

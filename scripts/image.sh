@@ -24,7 +24,6 @@ mmdebstrap --quiet --mode=root --variant=apt --architectures="$architecture" \
   --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
   --include="$deb" \
   --customize-hook='rm -rf "$1"/var/lib/apt/lists/* "$1"/var/cache/apt/*' \
-  --customize-hook="install -D -m 644 '$source/examples/bluerov.toml' \"\$1/usr/share/kelpie/bluerov.toml\"" \
   --customize-hook="install -D -m 755 '$source/scripts/image_start.sh' \"\$1/usr/bin/kelpie-start\"" \
   bookworm "$stage/root"
 

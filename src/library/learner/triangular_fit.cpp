@@ -90,34 +90,30 @@ void TriangularFit::set_theta(std::span<const double> theta) {
   solve();
 }
 
-// P_kk = |R⁻ᵀ e_k|², by forward substitution.
+// P_kk = |R⁻ᵀ e_k|².
 double TriangularFit::variance(std::size_t term) const {
-  const auto factor = as_factor(factor_, terms());
-  const auto k = static_cast<Eigen::Index>(term);
-  if (!(factor(k, k) > 0.0)) {
+  if (!(factor_[term * row_.size() + term] > 0.0)) {
     return std::numeric_limits<double>::infinity();
   }
-  auto scratch = as_vector(scratch_);
-  scratch(k) = 1.0 / factor(k, k);
-  double square = scratch(k) * scratch(k);
-  for (Eigen::Index j = k + 1; j < scratch.size(); ++j) {
-    const Eigen::Index between = j - k;
-    const double sum = factor.col(j).segment(k, between).dot(scratch.segment(k, between));
-    scratch(j) = factor(j, j) > 0.0 ? -sum / factor(j, j) : 0.0;
-    square += scratch(j) * scratch(j);
-  }
-  return square;
+  std::ranges::fill(scratch_, 0.0);
+  scratch_[term] = 1.0;
+  return forward_square(term, 0.0);
 }
 
-// φᵀPφ = |R⁻ᵀφ|², by forward substitution, row after row of R.
+// φᵀPφ = |R⁻ᵀφ|².
 double TriangularFit::leverage(std::span<const double> phi) const {
+  std::ranges::copy(phi, scratch_.begin());
+  return forward_square(0, std::numeric_limits<double>::infinity());
+}
+
+// Row after row of R, as R lies in memory: a column of R is a value per row, far apart.
+double TriangularFit::forward_square(std::size_t first, double unexcited) const {
   const auto factor = as_factor(factor_, terms());
   auto scratch = as_vector(scratch_);
-  scratch = as_vector(phi);
   double square = 0.0;
-  for (Eigen::Index k = 0; k < scratch.size(); ++k) {
+  for (auto k = static_cast<Eigen::Index>(first); k < scratch.size(); ++k) {
     if (!(factor(k, k) > 0.0)) {
-      square += scratch(k) != 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+      square += scratch(k) != 0.0 ? unexcited : 0.0;
       continue;
     }
     const double part = scratch(k) / factor(k, k);

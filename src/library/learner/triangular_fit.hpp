@@ -75,6 +75,9 @@ class TriangularFit {
   void add_priors(std::span<const double> phi);
   void absorb();
   void solve();
+  /// |R⁻ᵀ x|² of the vector x in scratch_, which is 0 before `first`; `unexcited` counts for an
+  /// entry of a term without excitation.
+  double forward_square(std::size_t first, double unexcited) const;
 
   double least_;
   std::vector<double> factor_;  ///< [R z …], upper triangular, row-major

@@ -116,9 +116,20 @@ class Search {
     return sum;
   }
 
+  const ThrustCurve& curve() const { return curve_; }
   SixAxisFit collected() const;
 
  private:
+  // The same windows and thrust curve over other rows.
+  Search(const SixAxisRows& rows, const Search& like)
+      : rows_(rows),
+        structure_(rows.thrusters),
+        arms_(like.arms_),
+        shape_(like.shape_),
+        curve_(like.curve_),
+        active_(like.active_),
+        best_(like.best_) {}
+
   static bool has_volts(const SixAxisRows& rows) {
     if (rows.volts.empty()) {
       return false;
@@ -272,6 +283,33 @@ class Search {
     return moved;
   }
 
+  // Covariance of the sought parameters by scale and bias of each axis of the velocity log, evenly
+  // distributed within what data sheets promise: the fit is repeated with each error, to both
+  // sides. A bias of heave or surge looks like a moment of the added mass, and so like a centre of
+  // gravity off the origin, and a bias of heave like weight.
+  Eigen::MatrixXd velocity_covariance() const {
+    Eigen::MatrixXd effects(best_.parameters.size(), 6);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double scale = kIdentification.velocity_scale;
+      const double bias = kIdentification.velocity_bias_m_s;
+      effects.col(place_of(axis)) =
+          0.5 * (with_error(axis, scale, 0.0) - with_error(axis, -scale, 0.0));
+      effects.col(place_of(3 + axis)) =
+          0.5 * (with_error(axis, 0.0, bias) - with_error(axis, 0.0, -bias));
+    }
+    const Eigen::MatrixXd sought = effects(best_.free, Eigen::all);
+    return sought * sought.transpose() / 3.0;
+  }
+
+  Eigen::VectorXd with_error(std::size_t axis, double scale, double bias) const {
+    SixAxisRows rows = rows_;
+    for (std::size_t i = axis; i < rows.velocities.size(); i += kSixAxes) {
+      rows.velocities[i] += scale * rows.velocities[i] + bias;
+    }
+    Search other(rows, *this);
+    return other.iterate(true) ? other.best_.parameters : best_.parameters;
+  }
+
   double usual_step_s() const {
     std::vector<double> steps;
     for (std::size_t row = 1; row < rows_.rows(); ++row) {
@@ -281,21 +319,14 @@ class Search {
     return steps[steps.size() / 2];
   }
 
-  double allowance(std::size_t place, double value) const {
-    const double scale = kIdentification.sensor_scale * value;
-    if (place == SixAxisPlace::net_weight) {  // a bias of heave looks like drag
-      return std::hypot(scale, kIdentification.velocity_bias_m_s *
-                                   best_.parameters(place_of(SixAxisPlace::linear_drag + 2)));
-    }
+  // Further standard errors, of what no log tells.
+  double allowance(std::size_t place) const {
     if (place == SixAxisPlace::moment || place == SixAxisPlace::moment + 1) {
-      return std::hypot(scale, kIdentification.attitude_bias_rad *
-                                   best_.parameters(place_of(SixAxisPlace::moment + 2)));
+      return kIdentification.attitude_bias_rad *
+             std::abs(best_.parameters(place_of(SixAxisPlace::moment + 2)));
     }
     const std::size_t curve = SixAxisPlace::curve(rows_.thrusters.size());
-    if (place == curve || place == curve + 1) {
-      return usual_step_s() / std::sqrt(12.0);
-    }
-    return scale;
+    return place == curve || place == curve + 1 ? usual_step_s() / std::sqrt(12.0) : 0.0;
   }
 
   const SixAxisRows& rows_;
@@ -325,7 +356,8 @@ SixAxisFit Search::collected() const {
   fit.covariance = Matrix(names.size(), names.size());
   auto covariance = as_matrix(fit.covariance);
   const double student = kIdentification.student90 / kIdentification.normal90;
-  covariance(best_.free, best_.free) = student * student * fit.misfit * errors_.covariance;
+  covariance(best_.free, best_.free) =
+      student * student * fit.misfit * errors_.covariance + velocity_covariance();
   const Eigen::VectorXd blur = blurs(errors_.covariance);
   const std::size_t curve = SixAxisPlace::curve(rows_.thrusters.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -333,7 +365,7 @@ SixAxisFit Search::collected() const {
     const bool is_sought = found != best_.free.end();
     const double value = i >= curve ? fit.curve.*kCurve[i - curve] : best_.parameters(place_of(i));
     if (is_sought) {
-      covariance(place_of(i), place_of(i)) += std::pow(allowance(i, value), 2.0);
+      covariance(place_of(i), place_of(i)) += std::pow(allowance(i), 2.0);
     }
     const ParameterState state =
         i == SixAxisPlace::inertia ? ParameterState::known
@@ -427,15 +459,15 @@ SixVector SixAxisFit::free_acceleration(std::span<const double, kSixAxes> veloci
 }
 
 SixAxisFit fit_six_axes(const SixAxisRows& rows, const SixAxisSettings& options) {
-  std::optional<SixAxisFit> best;
+  std::optional<Search> best;
   double least = std::numeric_limits<double>::infinity();
   SixAxisSettings from = options;
   for (const double half_s : kIdentification.half_windows_s) {
     Search search(rows, from, half_s);
     if (search.run() && search.log_errors() < least) {
       least = search.log_errors();
-      best = search.collected();
-      from.start = best->curve;  // near the next one's
+      from.start = search.curve();  // near the next one's
+      best.emplace(std::move(search));
     }
   }
   if (!best) {
@@ -445,8 +477,9 @@ SixAxisFit fit_six_axes(const SixAxisRows& rows, const SixAxisSettings& options)
                                         static_cast<double>(60 + 2 * rows.thrusters.size()))) +
         " windows of 0.5 to 8 s without a gap, with five rows or more each");
   }
-  require_inertias(*best);
-  return *std::move(best);
+  SixAxisFit fit = best->collected();
+  require_inertias(fit);
+  return fit;
 }
 
 }  // namespace kelpie

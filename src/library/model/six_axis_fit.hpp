@@ -101,11 +101,12 @@ struct SixAxisSettings {
 /// 3. The thrust curve is found by Gauss-Newton steps: derivatives of the thrust by its parameters
 ///    are further terms, whose coefficients are the steps.
 /// 4. Errors: sandwich from 24 pieces of the log, Student's t with 23 degrees of freedom, times the
-///    root of the misfit; plus 0.2 % of each value for the scale of sensors, 1 mm/s and 1 mrad of
-///    bias in the net weight and the moments, and half a row in lag and delay.
+///    root of the misfit; plus what a scale of ±0.2 % and a bias of ±1 mm/s of each velocity do to
+///    the fit, 1 mrad of attitude in the moments, and half a row in lag and delay.
 /// A parameter whose error blurs more than 30 % of the forces on its axis is not told. Throws
 /// InputError on too few rows, and naming inertias that are not told. Cost: per window length some
-/// eight times windows × (39 + 2 thrusters + 24)². Allocates. Deterministic.
+/// eight times windows × (39 + 2 thrusters + 24)², for errors twelve times more. Allocates.
+/// Deterministic.
 SixAxisFit fit_six_axes(const SixAxisRows& rows, const SixAxisSettings& options = {});
 
 }  // namespace kelpie

@@ -36,6 +36,7 @@ inline constexpr struct Tuning {
 
   // Parameters
   std::chrono::milliseconds between_parameters{500};  ///< of one request without an answer
+  std::chrono::seconds longest_introduction{20};      ///< of a vehicle without a configuration
   int most_asked = 10;  ///< requests of one parameter: another autopilot may not have it
 
   // Reports

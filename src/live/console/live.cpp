@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "autopilot/vehicle_configuration.hpp"
 #include "bag/open_bag.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log_options.hpp"
@@ -19,7 +20,9 @@
 #include "console/live_transport.hpp"
 #include "console/service.hpp"
 #include "core/text.hpp"
+#include "file/atomic_file.hpp"
 #include "file/out_folder.hpp"
+#include "file/toml.hpp"
 #include "format/checkpoint_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/checkpoint.hpp"
@@ -36,6 +39,7 @@ namespace {
 
 constexpr const char* kDemoPage = "8080";
 constexpr const char* kDemoFolder = "out/demo";
+constexpr const char* kVehicleFile = "vehicle.toml";  // what a vehicle told
 constexpr double kShortestDemoS = 20.0;
 constexpr double kLongestDemoS = 86'400.0;
 
@@ -50,6 +54,8 @@ struct LiveArguments {
   std::string record;
   std::string plotjuggler;
   std::string page;
+  std::string mavlink;  // connection of a vehicle that tells what its messages mean
+  std::string told{};   // by the vehicle: a configuration
   bool fresh = false;
   bool freeze = false;
   bool resume = false;
@@ -66,6 +72,10 @@ live::Configuration rows_configuration(const LiveArguments& options) {
 
 live::Configuration read_configuration(const LiveArguments& options) {
   const log::LogSource& replay = options.log.source;
+  if (!options.told.empty()) {
+    const std::string name = "the configuration of the vehicle at " + options.mavlink;
+    return live::read_configuration(file::TomlNode::parse(options.told, name), name, options.set);
+  }
   if (options.demo) {
     return live::rows_configuration(demo_rows(options.duration_s), options.config, options.set);
   }
@@ -81,8 +91,8 @@ live::Configuration read_configuration(const LiveArguments& options) {
     throw InputError(
         "--config",
         "is missing: what the messages of a connection mean, for which `kelpie inspect "
-        "LOG --template` writes a draft; a recording needs none: --replay LOG; --demo shows a "
-        "simulated vehicle");
+        "LOG --template` writes a draft; a vehicle with ArduSub needs none: --mavlink udp:14550; "
+        "nor does a recording: --replay LOG; --demo shows a simulated vehicle");
   }
   std::string summary;
   live::Configuration configuration = options.config.empty()
@@ -269,13 +279,40 @@ void say_plan(const live::Configuration& configuration,
                     : "begins anew");
 }
 
-void live_command(const LiveArguments& options) {
-  live::parse_speed(options.speed);
+// Asks the vehicle what its messages mean.
+LiveArguments with_told(LiveArguments options) {
+  if (!options.mavlink.empty()) {
+    const InterruptGuard interrupt;
+    warn("kelpie: asking the vehicle at {} for its parameters\n", options.mavlink);
+    std::string told;
+    const autopilot::HeardVehicle heard =
+        autopilot::hear_vehicle(options.mavlink, [&](const std::string& fault) {
+          if (fault != told) {
+            warn("{}", fault.empty() ? "" : "kelpie: " + fault + "\n");
+            told = fault;
+          }
+          return !InterruptGuard::asked();
+        });
+    options.told = autopilot::configuration_text(options.mavlink, heard);
+    const std::string others = log::other_outputs_text(heard.parameters);
+    warn("{}", others.empty() ? "" : "kelpie: no thrusters, not taken: outputs " + others + "\n");
+  }
+  return options;
+}
+
+void live_command(const LiveArguments& given) {
+  live::parse_speed(given.speed);
+  const LiveArguments options = with_told(given);
   const live::Configuration configuration = configuration_of(options);
   const file::OutFolder folder =
       take_out_folder(configuration.live.out,
                       {"model.json", format::kCheckpointName, format::kPreviousCheckpointName},
                       {options.log.source.path, options.config});
+  if (!options.told.empty()) {
+    const std::filesystem::path file = std::filesystem::path(configuration.live.out) / kVehicleFile;
+    file::write_file_whole(file, options.told);
+    warn("kelpie: configuration: {}\n", file.string());
+  }
   std::optional<live::SavedRun> saved = saved_run(options, configuration);
   const std::unique_ptr<live::Transport> transport =
       transport_of(options.log.source, options.speed, configuration, saved);
@@ -320,6 +357,13 @@ void add_live(CLI::App& app) {
            "TOML file with [log], [live] and settings (docs/live.md); without it a recording is "
            "read as `kelpie learn` reads one");
   add_set(command, options->set);
+  CLI::Option* const mavlink =
+      command
+          ->add_option("--mavlink", options->mavlink,
+                       "connection of a vehicle with ArduSub, in place of a configuration: "
+                       "udp:14550, udpout:HOST:PORT or serial:DEVICE:BAUD; the vehicle's "
+                       "parameters tell thrusters and directions (docs/bluerov2.md)")
+          ->excludes("--config");
   CLI::Option* const replay = add_file(command, "--replay", options->log.source.path,
                                        "log to replay, in place of a connection: " + log_formats());
   command
@@ -334,7 +378,8 @@ void add_live(CLI::App& app) {
           "--replay, as it was called")
       ->group("")
       ->excludes(replay);
-  add_demo(*command, *options)->excludes(replay);
+  mavlink->excludes(replay);
+  add_demo(*command, *options)->excludes(replay)->excludes(mavlink);
   options->log.add_columns_to(*command);
   add_folder(command, "--msg-dir", options->log.source.definitions,
              "folder of .msg files, for types that the recording doesn't define");

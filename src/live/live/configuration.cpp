@@ -281,8 +281,12 @@ std::vector<std::string> Configuration::columns() const {
 
 Configuration read_configuration(const std::filesystem::path& file,
                                  const std::vector<std::string>& set) {
-  const file::TomlNode root = file::TomlNode::read(file);
-  return configuration_of(root, file.string(), log::read_log_config(root), set);
+  return read_configuration(file::TomlNode::read(file), file.string(), set);
+}
+
+Configuration read_configuration(const file::TomlNode& root, const std::string& name,
+                                 const std::vector<std::string>& set) {
+  return configuration_of(root, name, log::read_log_config(root), set);
 }
 
 Configuration draft_configuration(const log::LogSource& source, const std::vector<std::string>& set,
@@ -293,8 +297,7 @@ Configuration draft_configuration(const log::LogSource& source, const std::vecto
   }
   summary = draft.summary(source.path);
   const std::string name = "the draft for " + source.path;
-  const file::TomlNode root = file::TomlNode::parse(draft.toml, name);
-  return configuration_of(root, name, log::read_log_config(root), set);
+  return read_configuration(file::TomlNode::parse(draft.toml, name), name, set);
 }
 
 namespace {

@@ -75,6 +75,10 @@ struct Configuration {
 Configuration read_configuration(const std::filesystem::path& file,
                                  const std::vector<std::string>& set);
 
+/// The same of a text that was read; messages call the text `name`.
+Configuration read_configuration(const file::TomlNode& root, const std::string& name,
+                                 const std::vector<std::string>& set);
+
 /// The configuration that is drafted for a recording (log::draft_of), and what was taken, in
 /// `summary`. Throws as read_configuration() does, and InputError (file) on a draft that leaves
 /// points open.

@@ -345,6 +345,7 @@ class Planner {
       add_line(group, "voltage", column);
     } else {
       group.head += "; it has no sender's time: change clock to \"receive\" to have it";
+      group.head += column.unit == "mV" ? ", and scale the column by 0.001 to have V" : "";
       group.lines.push_back({"voltage", column.name, signal_why(column)});
     }
     plan_.states.push_back(std::move(group));

@@ -61,12 +61,17 @@ std::string parameter_bars(const study::Identification& found) {
          chart::significant(parameter.value) + (unit == "1" ? "" : " " + chart::unit_text(unit)),
          is_free ? "" : format::state_word(parameter.state)});
   }
-  return rows.empty()
-             ? ""
-             : chart::interval_table(rows) +
-                   chart::paragraph("note",
-                                    "surge_force, sway_force, yaw_moment: a constant push, "
-                                    "as of trim, a tether or an offset of a sensor.");
+  if (rows.empty()) {
+    return "";
+  }
+  return chart::interval_table(rows) +
+         chart::paragraph("note",
+                          found.six
+                              ? "low_centre, forward_centre: the centre of gravity off the origin, "
+                                "times the mass. roll_moment, pitch_moment, righting_moment: "
+                                "centres of gravity and buoyancy apart, along x, y, z."
+                              : "surge_force, sway_force, yaw_moment: a constant push, "
+                                "as of trim, a tether or an offset of a sensor.");
 }
 
 // How far the parameters can be trusted, in one sentence.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/six_axes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <span>
 
+#include "core/quantile.hpp"
 #include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
@@ -72,6 +75,23 @@ std::string missing_velocity(const log::Dataset& data, const std::vector<std::si
     columns.targets[axis] = static_cast<std::size_t>(place - states.begin());
   }
   return "";
+}
+
+// Of another unit, as mV, a power of the voltage would be numbers without a meaning.
+void require_volts(const log::Dataset& data, const SixAxisColumns& columns, double nominal_v,
+                   std::vector<double> volts) {
+  constexpr double kMostRatio = 3.0;  // of a supply in use to the voltage of the data sheet
+  if (volts.empty() || nominal_v <= 0.0) {
+    return;
+  }
+  const double usual = quantile(volts, 0.5);
+  if (!(usual < kMostRatio * nominal_v) || usual < nominal_v / kMostRatio) {
+    throw InputError(
+        "--volts", fmt::format("'{}' is usually {:.4g}, the vehicle file's voltage is {:.4g} V; a "
+                               "column in mV becomes V by voltage = 0.001 under [log.scale] of "
+                               "--config",
+                               data.input_names[*columns.volts], usual, nominal_v));
+  }
 }
 
 void judge_six_axes(const log::Dataset& data, const std::vector<std::size_t>& rows,
@@ -213,6 +233,7 @@ Identification identify_six_axes(const log::Dataset& data, const Split& split,
   const std::vector<std::size_t> training = training_rows(data, split, only);
   Identification found = identification_of(data, split, training.size());
   const SixAxisRows rows = six_axis_rows(data, training, columns, vehicle, frame, neutral);
+  require_volts(data, columns, vehicle.battery.nominal_v, rows.volts);
   found.six = of_log(data, [&] { return fit_six_axes(rows, options); });
   for (const std::size_t target : columns.targets) {
     found.targets.push_back(data.target_names[target]);

@@ -10,13 +10,15 @@
 namespace kelpie::vehicle {
 namespace {
 
-// Sources. Gazebo: gz-sim, systems/hydrodynamics (added mass as a force of the last step's
-// acceleration, in issue 1923 with its bound M_A < M_RB), <fluid_added_mass> of SDFormat as part of
-// DART's spatial inertia; DART steps velocities first (semi-implicit Euler). UUV Simulator:
-// HMFossen (α = 0.3), worlds with ODE at 2 ms; ODE steps world velocities of the centre of gravity.
-// Stonefish: SolidEntity (mean of the added masses in Bullet's scalar mass), 500 steps/s here.
-// MSS: x = x + h xdot. Python Vehicle Simulator: nu first, then attitudeEuler, 20 ms.
-// orca4: a model of motion with quadratic drag, without added mass, 20 Hz.
+// Sources, read in November 2026; docs/identify.md, "Certificate", has the addresses.
+// Gazebo: gz-physics, AddedMassFeatures.cc (<fluid_added_mass> in DART's spatial inertia) and
+// SimulationFeatures.cc (weight of the dry mass as a force); DART, World::step:
+// integrateVelocities, then integratePositions. The plugin: gz-sim, Hydrodynamics.cc (stateDot),
+// issue 1923. UUV Simulator: HydrodynamicModel::ComputeAcc (α = 0.3); ODE, dxStepBody: positions
+// from the new world velocities of the centre of gravity. Stonefish: SolidEntity::getAugmentedMass;
+// Bullet steps as ODE does. MSS: SIMremus100.m, rk4, h = 0.05. Python Vehicle Simulator:
+// mainLoop.py, dynamics (forward Euler), then attitudeEuler with the new nu; main.py, 0.02 s.
+// orca4: base_context.hpp, timer_rate 20 Hz, and model.hpp (drag).
 constexpr std::array kEngines{
     Engine{"kelpie", "kelpie simulate: Fossen's equation, Runge-Kutta"},
     Engine{"gazebo", "Gazebo Harmonic, DART with <fluid_added_mass>", AddedMassForm::joined, 1.0,
@@ -29,7 +31,7 @@ constexpr std::array kEngines{
            true, StepForm::world_euler, 0.002},
     Engine{"orca4", "orca4's model of motion", AddedMassForm::none, 1.0, false, false,
            StepForm::body_euler, 0.05},
-    Engine{"mss", "MSS", AddedMassForm::joined, 1.0, true, true, StepForm::explicit_euler, 0.02},
+    Engine{"mss", "MSS", AddedMassForm::joined, 1.0, true, true, StepForm::runge_kutta, 0.05},
     Engine{"python_vehicle_simulator", "Python Vehicle Simulator", AddedMassForm::joined, 1.0, true,
            true, StepForm::body_euler, 0.02}};
 
@@ -209,15 +211,11 @@ EngineState EngineRun::next(const EngineState& state, const Vector6& force) cons
     case StepForm::world_euler:
       next = world_step(now, force);
       break;
-    case StepForm::explicit_euler:
-    case StepForm::body_euler: {
+    case StepForm::body_euler:
       next = now;
       next.velocity += step_s_ * rate(now, force);
-      const bool old = engine_.step == StepForm::explicit_euler;
-      next.attitude =
-          turned(now.attitude, step_s_ * (old ? now.velocity : next.velocity).tail<3>());
+      next.attitude = turned(now.attitude, step_s_ * next.velocity.tail<3>());
       break;
-    }
   }
   next.last_velocity = state.velocity;
   next.filtered_acceleration = now.filtered_acceleration;

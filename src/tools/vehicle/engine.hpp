@@ -22,10 +22,9 @@ enum class AddedMassForm : std::uint8_t {
 
 /// A step of length h.
 enum class StepForm : std::uint8_t {
-  runge_kutta,     ///< fourth order, of the body's velocity
-  explicit_euler,  ///< ν and attitude from the rates at the start of the step
-  body_euler,      ///< ν in the body's axes first, then the attitude from the new ν
-  world_euler      ///< velocity of the centre of gravity in world axes first, then the attitude
+  runge_kutta,  ///< fourth order, of the body's velocity
+  body_euler,   ///< ν in the body's axes first, then the attitude from the new ν
+  world_euler   ///< velocity of the centre of gravity in world axes first, then the attitude
 };
 
 /// The equations of a simulator, as documentation and sources of that simulator have them

@@ -33,7 +33,18 @@ class Rov {
       const double n = 8.0 * std::sin(0.37 * t_s_) + 2.0 * std::sin(1.3 * t_s_);
       u_ += kStep * (0.01 * n * std::abs(n) - 2.0 * u_ * std::abs(u_) - 0.3 * u_);
       if (is_due(1.0)) {
-        send(heartbeat_of_vehicle(writer_));
+        send(heartbeat_of_vehicle(writer_, is_armed));
+      }
+      if (is_due(rates_hz["ATTITUDE"])) {
+        writer_.begin("ATTITUDE").set("time_boot_ms", std::round(1e3 * t_s_));
+        for (const char* const field : {"roll", "rollspeed", "pitch", "pitchspeed", "yawspeed"}) {
+          writer_.set(field, 0.1 * std::sin(t_s_ + static_cast<double>(field[0])));
+        }
+        send(writer_.finish());
+      }
+      if (is_due(rates_hz["LOCAL_POSITION_NED"])) {
+        writer_.begin("LOCAL_POSITION_NED").set("time_boot_ms", std::round(1e3 * t_s_));
+        send(writer_.set("vx", u_).set("vy", 0.5 * u_).set("vz", 0.1 * u_).finish());
       }
       if (is_due(rates_hz["ODOMETRY"])) {
         writer_.begin("ODOMETRY").set("time_usec", std::round(1e6 * t_s_)).set("vx", u_);
@@ -45,6 +56,8 @@ class Rov {
       }
     }
   }
+
+  bool is_armed = false;
 
   /// What comes to it.
   void hear(std::span<const std::byte> bytes, const Send& send) {

@@ -72,6 +72,46 @@ TEST_F(LiveMavlink, LearnsFromAVehicleAndTellsItWhatItPredicts) {
   EXPECT_EQ(learned.exit_code, 0) << learned.err;
 }
 
+// Motors 1 and 2 on outputs 3 and 1, motor 2 reversed, lights on output 4: no file says so.
+TEST_F(LiveMavlink, AVehicleTellsWhatItsMessagesMean) {
+  const std::string port = free_port();
+  Running live(folder_.path(), {"live", "--mavlink", "udp:" + port, "--set", "buffer=60", "--set",
+                                "anchors=20", "--out", "out"});
+  Vehicle vehicle(port);
+  vehicle.rov.is_armed = true;
+  vehicle.rov.parameters = {
+      {"FRAME_CONFIG", 1.0}, {"MOT_1_DIRECTION", 1.0}, {"MOT_2_DIRECTION", -1.0}};
+  for (int output = 1; output <= 16; ++output) {
+    vehicle.rov.parameters["SERVO" + std::to_string(output) + "_FUNCTION"] = output == 1   ? 34.0
+                                                                             : output == 3 ? 33.0
+                                                                             : output == 4 ? 181.0
+                                                                                           : 0.0;
+  }
+  EXPECT_TRUE(live.wait_until([&] {
+    vehicle.go();
+    return vehicle.rov.t_s() > 60.0 && vehicle.rov.heard["udot"] > 5;
+  })) << live.terminal_text();
+  EXPECT_TRUE(live.wait_for_text("outputs 4 (lights 1)"));
+  live.press_ctrl_c();
+  EXPECT_EQ(live.exit_code(), 0);
+  EXPECT_TRUE(exists("out/model.json"));
+  const std::string told = content("out/vehicle.toml");
+  EXPECT_NE(told.find("m1 = \"SERVO_OUTPUT_RAW:servo3_raw\""), std::string::npos) << told;
+  EXPECT_NE(told.find("m2 = \"SERVO_OUTPUT_RAW:servo1_raw\""), std::string::npos) << told;
+  EXPECT_NE(told.find("vectored, 6 motors"), std::string::npos) << told;
+  // The file is a configuration like any other.
+  const Outcome checked = run("live --config out/vehicle.toml --out again --check");
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_NE(checked.out.find("m2: SERVO_OUTPUT_RAW:servo1_raw"), std::string::npos) << checked.out;
+}
+
+TEST_F(LiveMavlink, AConnectionWithoutAVehicleIsTold) {
+  const Outcome odd = run("live --mavlink nowhere --out out");
+  EXPECT_EQ(odd.exit_code, 2);
+  EXPECT_NE(odd.err.find("--mavlink"), std::string::npos) << odd.err;
+  EXPECT_EQ(run("live --mavlink udp:14550 --demo").exit_code, 2);
+}
+
 // Autopilots by the thousand before the vehicle comes, and forged samples under its numbers.
 TEST_F(LiveMavlink, NeitherLosesTheVehicleNorLearnsFromAnother) {
   const std::string port = free_port();

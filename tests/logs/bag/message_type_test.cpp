@@ -58,7 +58,19 @@ TEST(MessageType, BuiltInTypesAreThoseOfUnderwaterVehicles) {
   const bag::MessageDefinitions definitions;
   // Leaves in the order of storage: a wrong or missing field shifts the last one.
   for (const auto& [name, path, leaf] :
-       {std::tuple("geometry_msgs/msg/PoseStamped", "pose.orientation.w", 9U),
+       {std::tuple("geometry_msgs/msg/Pose", "orientation.w", 6U),
+        std::tuple("geometry_msgs/msg/Twist", "angular.z", 5U),
+        std::tuple("geometry_msgs/msg/TwistStamped", "twist.angular.z", 8U),
+        std::tuple("geometry_msgs/msg/TwistWithCovariance", "covariance[]", 6U),
+        std::tuple("geometry_msgs/msg/TwistWithCovarianceStamped", "twist.covariance[]", 9U),
+        std::tuple("geometry_msgs/msg/Wrench", "torque.z", 5U),
+        std::tuple("geometry_msgs/msg/WrenchStamped", "wrench.torque.z", 8U),
+        std::tuple("geometry_msgs/msg/Accel", "angular.z", 5U),
+        std::tuple("geometry_msgs/msg/AccelStamped", "accel.angular.z", 8U),
+        std::tuple("geometry_msgs/msg/AccelWithCovariance", "covariance[]", 6U),
+        std::tuple("geometry_msgs/msg/AccelWithCovarianceStamped", "accel.covariance[]", 9U),
+        std::tuple("sensor_msgs/msg/Imu", "linear_acceleration_covariance[]", 15U),
+        std::tuple("geometry_msgs/msg/PoseStamped", "pose.orientation.w", 9U),
         std::tuple("geometry_msgs/msg/PoseWithCovarianceStamped", "pose.covariance[]", 10U),
         std::tuple("geometry_msgs/msg/TransformStamped", "transform.rotation.w", 10U),
         std::tuple("tf2_msgs/msg/TFMessage", "transforms[].transform.rotation.w", 10U),

@@ -38,8 +38,11 @@ class Tlog {
 };
 
 /// The HEARTBEAT of an autopilot: ArduPilot on a submarine.
-inline std::span<const std::byte> heartbeat_of_vehicle(mavlink::FrameWriter& writer) {
+inline std::span<const std::byte> heartbeat_of_vehicle(mavlink::FrameWriter& writer,
+                                                       bool is_armed = false) {
   writer.begin("HEARTBEAT").set("type", 12).set("autopilot", 3).set("mavlink_version", 3);
+  constexpr double kSafetyArmed = 128.0;  // of base_mode
+  writer.set("base_mode", is_armed ? kSafetyArmed : 0.0);
   return writer.finish();
 }
 

@@ -125,6 +125,10 @@ TEST_F(Identify, SixAxesWhereTheVehicleFileHasTheLogsThrusters) {
   testing::succeeded(run("simulate again.toml --out again.csv"));
   expect_refused(known + " --for gazebbo", "did you mean 'gazebo'?");
   expect_refused(known + " --volts batt", "batt");
+  std::string other = testing::content_of(kHeavy);
+  other.replace(other.find("nominal_v = 16.0"), 16, "nominal_v = 1600.0");
+  write("other.toml", other);
+  expect_refused("heavy.csv --vehicle other.toml --volts voltage", "voltage is 1600 V");
 }
 
 // The log with the commands that rotors with a time constant of 1 s would have needed.
