@@ -12,6 +12,7 @@
 // came, they aren't near what it did, or a frame was damaged.
 
 import { createSocket } from "node:dgram";
+import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { PassThrough } from "node:stream";
 
@@ -24,31 +25,19 @@ const PORT = 14550;
 const STEP_S = 0.005;
 const SET_MESSAGE_INTERVAL = 511;
 
-const CONFIG = `[log]
-inputs = ["u", "r", "left", "right"]
-targets = ["udot", "rdot"]
-rate = 10
-clock = "header"
-vectors = [{columns = ["u", "v", "w"], from = "NED", to = "FRD", attitude = ["phi", "theta", "psi"]}]
-[log.states]
-u = "LOCAL_POSITION_NED:vx"
-v = "LOCAL_POSITION_NED:vy"
-w = "LOCAL_POSITION_NED:vz"
-phi = "ATTITUDE:roll"
-theta = "ATTITUDE:pitch"
-psi = "ATTITUDE:yaw"
-r = "ATTITUDE:yawspeed"
-[log.commands]
-left = "SERVO_OUTPUT_RAW:servo1_raw"
-right = "SERVO_OUTPUT_RAW:servo2_raw"
-[log.derived]
-udot = "d(u)"
-rdot = "d(r)"
-[live]
+const LIVE = `[live]
 align = "none"
 [live.mavlink]
 connection = "udp:${PORT}"
 `;
+
+function config() {
+  const names = ["left", "right"];
+  const line = (name, k) => `${name} = "SERVO_OUTPUT_RAW:servo${k + 1}_raw"`;
+  return readFileSync(new URL("mavlink_log.toml", import.meta.url), "utf8")
+    .replace("{inputs}", names.map((name) => `"${name}"`).join(", "))
+    .replace("{commands}", names.map(line).join("\n")) + LIVE;
+}
 
 // Surge and yaw, by one thruster on either side.
 class Vehicle {
@@ -150,7 +139,7 @@ function drive(seconds) {
 }
 
 const [command, seconds] = process.argv.slice(2);
-if (command === "config") process.stdout.write(CONFIG);
+if (command === "config") process.stdout.write(config());
 else if (command === "drive" && Number(seconds) > 0) drive(Number(seconds));
 else {
   console.error("usage: mavlink_vehicle.mjs config | drive SECONDS");
