@@ -41,7 +41,7 @@ constexpr double kStepS = 0.1;
 
 // A boat with two propellers, of which a model is learned.
 TrainedModel learned_boat(bool with_actuators = false) {
-  RandomStream random(7);
+  RandomStream random(7, "boat");
   DynamicsModel model(kInputs, kTargets, ModelSettings::from_preset("small", kTargets.size()));
   std::array<double, 5> x{};
   for (int row = 0; row < 3000; ++row) {
@@ -224,7 +224,7 @@ TEST(Fmu, SaysAccelerationsOfTheModelAndVelocitiesOfARollout) {
   Rollout rollout(loop, {.step_s = fmu::Vehicle::kStepS, .between = CommandPath::held});
   rollout.start(x);
   std::vector<double> y(3);
-  RandomStream random(3);
+  RandomStream random(3, "boat");
   for (int step = 0; step < 200; ++step) {
     boat().predict(x, y);
     for (std::size_t k = 0; k < y.size(); ++k) {
@@ -374,7 +374,7 @@ TEST(Fmu, TheSameModelGivesTheSameBytes) {
 
 TEST(Fmu, AModelThatCannotBeRolledOutIsNoUnit) {
   DynamicsModel model({"a", "b"}, {"c"}, ModelSettings::from_preset("small", 1));
-  RandomStream random(1);
+  RandomStream random(1, "boat");
   for (int row = 0; row < 300; ++row) {
     const std::array x{random.normal(), random.normal()};
     model.update(x, std::array{x[0]}, 0.1 * row);
