@@ -42,6 +42,8 @@ if(KELPIE_BUILD_TOOLS)
   endif()
   install(PROGRAMS scripts/slurm/kelpie-study-array.sbatch COMPONENT runtime
           DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie/slurm")
+  install(TARGETS kelpie_fmu COMPONENT runtime LIBRARY
+          DESTINATION "${CMAKE_INSTALL_LIBDIR}/kelpie")
   if(TARGET kelpie_mpi)
     install(TARGETS kelpie_mpi COMPONENT mpi LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/kelpie")
     install(PROGRAMS scripts/slurm/kelpie-study.sbatch COMPONENT mpi

@@ -108,7 +108,8 @@ if(CMAKE_CROSSCOMPILING AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
   set(CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_SHLIBDEPS OFF)
   string(CONCAT CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS
     "libbz2-1.0, libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libhwy1, liblz4-1, "
-    "libsqlite3-0, libssl3, libtomlplusplus3, libyaml-cpp0.7, libzstd1, zlib1g")
+    "libsqlite3-0, libssl3, libtinyxml2-9, libtomlplusplus3, libyaml-cpp0.7, libzip4, libzstd1, "
+    "zlib1g")
   if(CYCLONEDDS_FOUND)
     string(APPEND CPACK_DEBIAN_KELPIE_TOOLS_PACKAGE_DEPENDS ", libddsc0debian")
   endif()

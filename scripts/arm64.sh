@@ -13,6 +13,7 @@ libraries=(
   libeigen3-dev libhwy-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev libyaml-cpp-dev zlib1g-dev libsvm-dev libgtest-dev
   librapidcheck-dev cyclonedds-dev libmicrohttpd-dev libssl-dev libmatio-dev libsystemd-dev
+  libzip-dev libtinyxml2-dev
 )
 # The cross compiler has its own of these.
 toolchain='^(libc6|libc6-dev|libc-dev-bin|linux-libc-dev|libgcc-s1|libstdc\+\+6|gcc-12-base)_'

@@ -10,6 +10,7 @@ packages=(
   g++ cmake ninja-build pkg-config
   libeigen3-dev libhwy-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libsvm-dev
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev libyaml-cpp-dev zlib1g-dev libsystemd-dev
+  libzip-dev libtinyxml2-dev
   cyclonedds-dev libmicrohttpd-dev libssl-dev libmatio-dev libopenmpi-dev openmpi-bin
   libgtest-dev librapidcheck-dev libfastrtps-dev libfastcdr-dev doxygen help2man
   pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip python3-build

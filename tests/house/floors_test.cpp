@@ -51,10 +51,12 @@ const Building kTools{
     {"chart", {}},
     {"study", {"jobs", "log", "vehicle", "file"}},
     {"format", {"study", "log", "vehicle", "file"}},
+    {"fmu", {"format", "file"}},
     {"fleet", {"format", "study", "jobs", "log", "file"}},
     {"report", {"fleet", "format", "study", "log", "bag", "chart", "file"}},
     {"cli",
-     {"report", "fleet", "format", "study", "jobs", "log", "bag", "vehicle", "chart", "file"}},
+     {"report", "fmu", "fleet", "format", "study", "jobs", "log", "bag", "vehicle", "chart",
+      "file"}},
 };
 const Building kLive{
     {"live", {"format", "study", "log", "bag", "chart", "file"}},

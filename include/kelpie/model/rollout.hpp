@@ -59,6 +59,9 @@ class Rollout {
   void advance(std::span<const double> x, double dt_s);
 
   double age_s() const { return age_s_; }
+  /// The present inputs of the model: integrated velocities and angles, all others as given. A
+  /// velocity here has the whole predicted change, whatever the share that practice keeps.
+  std::span<const double> inputs() const { return x_; }
   /// A velocity in the log's unit.
   double velocity(std::size_t state) const;
   /// Standard deviation of a velocity.

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <filesystem>
-#include <memory>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
+#include "fmu/fmu_file.hpp"
 #include "format/model_c.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
@@ -20,24 +21,18 @@ namespace {
 
 struct ExportArguments {
   std::string model;
+  std::string fmu;
   std::string c_file;
   std::string header;
   std::vector<std::string> units;
   format::CodeOptions code;
 };
 
-void export_model(const ExportArguments& options) {
-  check_output("--c", options.c_file, {options.model});
-  if (!options.header.empty()) {
-    check_output("--header", options.header, {options.model, options.c_file});
-  }
-  const TrainedModel model = read_given_model(options.model);
+void export_c(const TrainedModel& model, const ExportArguments& options,
+              const std::map<std::string, Unit>& units) {
   format::CodeOptions code = options.code;
   code.source = options.model;
-  for (const std::string& assignment : options.units) {
-    const auto [column, unit] = format::key_and_value(assignment, "--units");
-    code.units[column] = Unit::parse(unit);
-  }
+  code.units = units;
   file::write_file_whole(options.c_file, format::model_c(model, code));
   if (!options.header.empty()) {
     file::write_file_whole(options.header, format::model_h(model, code));
@@ -48,26 +43,70 @@ void export_model(const ExportArguments& options) {
       static_cast<double>(format::table_bytes(model, code)) / 1000.0);
 }
 
+// The model's own units, and those given beside.
+fmu::FmuOptions fmu_options(const format::ModelInfo& info, const ExportArguments& options,
+                              const std::map<std::string, Unit>& given) {
+  fmu::FmuOptions unit{.name = options.code.name, .units = given};
+  for (const auto& [column, text] : info.units) {
+    unit.units.try_emplace(column, Unit::parse(text));
+  }
+  return unit;
+}
+
+void export_model(const ExportArguments& options) {
+  if (options.c_file.empty() && options.fmu.empty()) {
+    throw InputError("export", "needs --c FILE or --fmu FILE: what to write");
+  }
+  std::vector<std::string> taken{options.model};
+  for (const auto& [option, name] :
+       {std::pair{"--c", &options.c_file}, std::pair{"--header", &options.header},
+        std::pair{"--fmu", &options.fmu}}) {
+    if (!name->empty()) {
+      check_output(option, *name, taken);
+      taken.push_back(*name);
+    }
+  }
+  std::map<std::string, Unit> units;
+  for (const std::string& assignment : options.units) {
+    const auto [column, unit] = format::key_and_value(assignment, "--units");
+    units[column] = Unit::parse(unit);
+  }
+  format::ModelInfo info;
+  const TrainedModel model = read_given_model(options.model, &info);
+  if (!options.c_file.empty()) {
+    export_c(model, options, units);
+  }
+  if (!options.fmu.empty()) {
+    fmu::write_fmu(options.fmu, model, fmu_options(info, options, units));
+    say("FMU: {} (FMI 2.0, co-simulation, this machine's processor)\n", options.fmu);
+  }
+}
+
 }  // namespace
 
 void add_export(CLI::App& app) {
-  const auto [command, options] =
-      add_command(app, "export", "Write a learned model as C for other programs", export_model);
+  const auto [command, options] = add_command(
+      app, "export", "Write a learned model for other programs: as C, or as a unit of FMI 2.0",
+      export_model);
   add_model(command, "model", options->model);
-  add_file(command, "--c", options->c_file, "C file to write: C99 that needs nothing but exp()")
-      ->required();
-  add_file(command, "--header", options->header, "header file to write for who calls it");
+  CLI::Option* const c = add_file(command, "--c", options->c_file,
+                                  "C file to write: C99 that needs nothing but exp()");
+  add_file(command, "--header", options->header, "header file to write for callers")->needs(c);
+  add_file(command, "--fmu", options->fmu,
+           "co-simulation unit of FMI 2.0 to write: the vehicle in simulation");
   command->add_flag("--float", options->code.single, "float instead of double");
   command->add_flag("--assess", options->code.assess,
                     "a function that tells interval and novelty, too");
   command->add_flag("--casadi", options->code.casadi,
                     "the functions that CasADi's external() and acados call, too");
-  command->add_option("--name", options->code.name, "what the names of its functions begin with")
+  command
+      ->add_option("--name", options->code.name,
+                   "beginning of the functions' names; name of the unit of FMI")
       ->capture_default_str();
   add_list(command, "--units", options->units,
            "units of columns, kept in the file, as in u=m/s,th1=rev/s,udot=m/s^2");
   add_examples(command, "export --c model.c --header model.h",
-               "export out/tail/model.json --c model.c --float --assess");
+               "export out/learn/model.json --fmu vehicle.fmu");
 }
 
 }  // namespace kelpie::cli

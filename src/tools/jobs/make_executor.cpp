@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
-#include <system_error>
 
+#include "file/plugin.hpp"
 #include "jobs/rank_executor.hpp"
 #include "jobs/rank_group.hpp"
 #include "kelpie/core/error.hpp"
@@ -31,19 +31,15 @@ std::size_t count_of(const char* text) {
 }
 
 fs::path find_plugin(const Start& start) {
-  std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none).parent_path();
-  const fs::path installed = (program / KELPIE_PLUGINS_FROM_PROGRAM).lexically_normal();
-  for (const fs::path& folder : {program, installed}) {
-    if (fs::exists(folder / kPlugin, none)) {
-      return folder / kPlugin;
-    }
+  try {
+    return file::find_plugin(kPlugin);
+  } catch (const Failure& missing) {
+    throw InputError(start.by,
+                     fmt::format("{} processes were started, but {} that they would work "
+                                 "together by (Debian package kelpie-mpi, or a build with "
+                                 "-DKELPIE_WITH_MPI=ON)",
+                                 start.processes, missing.what()));
   }
-  throw InputError(start.by,
-                   fmt::format("{} processes were started, but there is no {} in {} or {} "
-                               "that they would work together by (Debian package "
-                               "kelpie-mpi, or a build with -DKELPIE_WITH_MPI=ON)",
-                               start.processes, kPlugin, program.string(), installed.string()));
 }
 
 std::unique_ptr<RankGroup> open_group(const fs::path& plugin) {

@@ -24,7 +24,7 @@ TEST_F(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   outcome = exported("--units udott=m/s^2");
   testing::expect_refused(outcome, "no column 'udott' (did you mean 'udot'?)");
   EXPECT_FALSE(exists("model.c"));
-  EXPECT_EQ(run("export out/model.json").exit_code, 2);
+  testing::expect_refused(run("export out/model.json"), "needs --c FILE or --fmu FILE");
   EXPECT_EQ(run("export log.csv --c model.c").exit_code, 2);
 
   const std::string model = content("out/model.json");
@@ -39,6 +39,18 @@ TEST_F(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   EXPECT_NE(code.find("surge_target_units[1] = {\"m s^-2\"};"), std::string::npos);
   testing::succeeded(exported("--float"));
   EXPECT_NE(content("model.c").find("kelpie_model_predict(const float x[2]"), std::string::npos);
+}
+
+TEST_F(Export, WritesAUnitOfFmi) {
+  write("log.csv", little_log(2400));
+  testing::succeeded(run("learn log.csv --out out"));
+  const Outcome outcome =
+      testing::succeeded(run("export out/model.json --fmu vehicle.fmu --name twin"));
+  EXPECT_NE(outcome.out.find("FMU: vehicle.fmu (FMI 2.0, co-simulation"), std::string::npos);
+  EXPECT_EQ(content("vehicle.fmu").substr(0, 2), "PK");
+  testing::expect_refused(run("export out/model.json --fmu vehicle.fmu --units w=m/s"),
+                          "there is no column 'w' in the model");
+  EXPECT_EQ(run("export out/model.json --fmu out/model.json").exit_code, 2);
 }
 
 }  // namespace
