@@ -30,6 +30,8 @@ const std::map<std::string, std::string> kKeys{
     {"liblz4", "liblz4-dev"},
     {"matio", "libmatio-dev"},
     {"CLI11", "cli11"},
+    {"tinyxml2", "tinyxml2"},
+    {"libzip", "libzip-dev"},
     {"Threads", ""},
     {"ompi-c", ""},
     {"libcrypto", "libssl-dev"},
