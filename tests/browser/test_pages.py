@@ -228,6 +228,8 @@ def test_the_headline_comes_first_and_units_are_as_people_write_them(pages):
     assert page.run("return [...kelpie.figures][0].description.y.label") == "udot in m/s²"
     marks = page.run("return [...kelpie.figures][0].description.marks.map(({ x }) => x)")
     assert all(abs(mark - DAMAGE_S) < 1 for mark in marks), "changes stand where they happened"
+    page.run("[...kelpie.figures][0].frame.scrollIntoView()")
+    page.wait("[...kelpie.figures][0].visible")
     first, last = windows(page)[0]
     assert last - first == pytest.approx(60) and first < DAMAGE_S < last
 

@@ -34,7 +34,7 @@ std::vector<NextStep> after_learning(const study::StreamResult& result, const st
                                      const std::string& model) {
   std::vector<NextStep> next;
   if (const std::optional<double> since_s = last_change_s(result)) {
-    next.push_back({fmt::format("kelpie learn {} --since {:.10g} --out out/since", log, *since_s),
+    next.push_back({fmt::format("kelpie learn {} --since {:.12g} --out out/since", log, *since_s),
                     "the changed vehicle alone: compare R²"});
   }
   next.push_back(

@@ -138,6 +138,22 @@ TEST(Plausibility, NamesALateTarget) {
   expect_mistake(data, "udot comes 2 s later than u changes");
 }
 
+// Over five seconds a slow swing two seconds late looks as if in time.
+TEST(Plausibility, NamesALateTargetThatLongWindowsHide) {
+  log::Dataset data = drive();
+  const auto wave = [](double time, double period) {
+    return 2.0 * std::numbers::pi * time / period;
+  };
+  for (std::size_t i = 0; i < kRows; ++i) {
+    const double now = data.times_s[i];
+    const double late = now - 2.0;
+    data.inputs[3 * i] = 30.0 / (2.0 * std::numbers::pi) * std::sin(wave(now, 30.0)) +
+                         0.8 * 4.1 / (2.0 * std::numbers::pi) * std::sin(wave(now, 4.1));
+    data.targets[2 * i] = std::cos(wave(late, 30.0)) + 0.8 * std::cos(wave(late, 4.1));
+  }
+  expect_mistake(data, "udot comes 2 s later than u changes");
+}
+
 TEST(Plausibility, AColumnWithoutAVelocityHasNoCheck) {
   log::Dataset data = with_target(0, 100.0);
   data.target_names = {"force", "moment"};
