@@ -38,7 +38,7 @@ class CMakeBuild(build_ext):
     def build_module(self) -> Path:
         folder = Path(self.build_temp).resolve()
         jobs = len(os.sched_getaffinity(0))
-        say(f"kelpie: compiling on {jobs} core(s), some {round(4 / jobs) + 1} minutes; "
+        say(f"kelpie: compiling on {jobs} core(s), some {round(10 / jobs) + 1} minutes; "
             "pip install -v shows each step")
         ninja = ["-G", "Ninja"] if shutil.which("ninja") else []
         subprocess.run(
