@@ -249,6 +249,14 @@ AlignmentSearch::Scored AlignmentSearch::refined(Scored from) {
   return from;
 }
 
+// Where a kernel describes the vehicle better than the terms of least squares, the terms may like
+// commands that merely go with the vehicle; elsewhere the kernel, of fewer rows, has no say.
+bool AlignmentSearch::kernel_agrees(const Scored& present, const Scored& other) {
+  const double before = fit_.log_kernel_error(present.guess);
+  return before >= present.errors.mean() ||
+         fit_.log_kernel_error(other.guess) < before + kSearch.least_gain;
+}
+
 void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& better,
                              AlignmentResult& found) {
   const bool none = present.guess == known_;
@@ -260,10 +268,7 @@ void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& b
   };
   for (const Scored& other : better) {
     const Evidence gain(present.errors - other.errors);
-    // Where least squares describe the vehicle badly they may like commands that merely go with it.
-    if (other.guess != present.guess && gain.is_clear() &&
-        fit_.log_kernel_error(other.guess) <
-            fit_.log_kernel_error(present.guess) + kSearch.least_gain) {
+    if (other.guess != present.guess && gain.is_clear() && kernel_agrees(present, other)) {
       found.alignment.rows = other.guess.shift;
       found.alignment.lag_s = other.guess.shift / rate_hz_;
       found.alignment.actuators = other.guess.actuators;

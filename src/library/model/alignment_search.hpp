@@ -34,6 +34,7 @@ class AlignmentSearch {
   Scored each_command(Scored from);
   Scored command(Scored from, std::size_t k);
   Scored refined(Scored from);
+  bool kernel_agrees(const Scored& present, const Scored& other);
   void decide(const Scored& present, const std::vector<Scored>& better, AlignmentResult& found);
 
   AlignmentFit& fit_;
