@@ -142,21 +142,13 @@ void get_reals(Instance& instance, const fmi2ValueReference variables[], std::si
   }
 }
 
-void step(Instance& instance, double step_s) {
+void do_step(Instance& instance, double step_s) {
   require_phase(instance, Phase::stepping, "fmi2DoStep");
   instance.vehicle.advance(step_s);
   require(instance.vehicle.is_finite(), "fmi2DoStep", "ended in a number that is not finite");
 }
 
 }  // namespace
-}  // namespace kelpie::fmu
-
-using kelpie::require;
-using kelpie::fmu::guarded;
-using kelpie::fmu::Instance;
-using kelpie::fmu::Phase;
-using kelpie::fmu::refuse;
-using kelpie::fmu::Vehicle;
 
 fmi2String fmi2GetTypesPlatform() {
   return "default";
@@ -178,10 +170,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return nullptr;
   }
   try {
-    return kelpie::fmu::instantiate(name, type, guid, resources, *functions, logging != 0)
-        .release();
+    return instantiate(name, type, guid, resources, *functions, logging != 0).release();
   } catch (const std::exception& error) {
-    kelpie::fmu::tell(*functions, name, fmi2Error, error.what());
+    tell(*functions, name, fmi2Error, error.what());
     return nullptr;
   }
 }
@@ -194,7 +185,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component vehicle, fmi2Boolean /*has_toleranc
                                fmi2Real /*tolerance*/, fmi2Real start, fmi2Boolean /*has_stop*/,
                                fmi2Real /*stop*/) {
   return guarded(vehicle, [&](Instance& instance) {
-    kelpie::fmu::require_phase(instance, Phase::instantiated, "fmi2SetupExperiment");
+    require_phase(instance, Phase::instantiated, "fmi2SetupExperiment");
     require(std::isfinite(start), "startTime", "has to be a finite number");
     instance.start_s = start;
   });
@@ -202,14 +193,14 @@ fmi2Status fmi2SetupExperiment(fmi2Component vehicle, fmi2Boolean /*has_toleranc
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component vehicle) {
   return guarded(vehicle, [](Instance& instance) {
-    kelpie::fmu::require_phase(instance, Phase::instantiated, "fmi2EnterInitializationMode");
+    require_phase(instance, Phase::instantiated, "fmi2EnterInitializationMode");
     instance.phase = Phase::initialising;
   });
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component vehicle) {
   return guarded(vehicle, [](Instance& instance) {
-    kelpie::fmu::require_phase(instance, Phase::initialising, "fmi2ExitInitializationMode");
+    require_phase(instance, Phase::initialising, "fmi2ExitInitializationMode");
     instance.vehicle.start(instance.start_s);
     instance.phase = Phase::stepping;
   });
@@ -228,16 +219,14 @@ fmi2Status fmi2Reset(fmi2Component vehicle) {
 
 fmi2Status fmi2GetReal(fmi2Component vehicle, const fmi2ValueReference variables[],
                        std::size_t count, fmi2Real values[]) {
-  return guarded(vehicle, [&](Instance& instance) {
-    kelpie::fmu::get_reals(instance, variables, count, values);
-  });
+  return guarded(vehicle,
+                 [&](Instance& instance) { get_reals(instance, variables, count, values); });
 }
 
 fmi2Status fmi2SetReal(fmi2Component vehicle, const fmi2ValueReference variables[],
                        std::size_t count, const fmi2Real values[]) {
-  return guarded(vehicle, [&](Instance& instance) {
-    kelpie::fmu::set_reals(instance, variables, count, values);
-  });
+  return guarded(vehicle,
+                 [&](Instance& instance) { set_reals(instance, variables, count, values); });
 }
 
 // All variables are real: lists of other types have to be empty.
@@ -354,7 +343,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component vehicle,
 
 fmi2Status fmi2DoStep(fmi2Component vehicle, fmi2Real /*t*/, fmi2Real step,
                       fmi2Boolean /*no_return*/) {
-  return guarded(vehicle, [&](Instance& instance) { kelpie::fmu::step(instance, step); });
+  return guarded(vehicle, [&](Instance& instance) { do_step(instance, step); });
 }
 
 // Steps end before they return: none waits.
@@ -389,3 +378,5 @@ fmi2Status fmi2GetStringStatus(fmi2Component vehicle, fmi2StatusKind /*kind*/,
                                fmi2String* /*value*/) {
   return refuse(vehicle, "no step is under way");
 }
+
+}  // namespace kelpie::fmu

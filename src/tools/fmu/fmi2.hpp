@@ -5,6 +5,8 @@
 
 #include <cstddef>
 
+namespace kelpie::fmu {
+
 // NOLINTBEGIN(readability-identifier-naming): names of the standard
 extern "C" {
 
@@ -109,3 +111,5 @@ KELPIE_FMI2 fmi2Status fmi2GetStringStatus(fmi2Component vehicle, fmi2StatusKind
                                            fmi2String* value);
 }
 // NOLINTEND(readability-identifier-naming)
+
+}  // namespace kelpie::fmu

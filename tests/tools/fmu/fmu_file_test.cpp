@@ -32,6 +32,7 @@ namespace kelpie::fmu_file_test {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace fmu;  // NOLINT(google-build-using-namespace): names of the standard
 using testing::message_of;
 using testing::TemporaryFolder;
 
