@@ -62,6 +62,8 @@ class Rollout {
   /// The present inputs of the model: integrated velocities and angles, all others as given. A
   /// velocity here has the whole predicted change, whatever the share that practice keeps.
   std::span<const double> inputs() const { return x_; }
+  /// Places of the integrated inputs: the velocities, then the angles.
+  std::span<const std::size_t> integrated() const { return integrated_; }
   /// A velocity in the log's unit.
   double velocity(std::size_t state) const;
   /// Standard deviation of a velocity.

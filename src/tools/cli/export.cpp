@@ -45,7 +45,7 @@ void export_c(const TrainedModel& model, const ExportArguments& options,
 
 // The model's own units, and those given beside.
 fmu::FmuOptions fmu_options(const format::ModelInfo& info, const ExportArguments& options,
-                              const std::map<std::string, Unit>& given) {
+                            const std::map<std::string, Unit>& given) {
   fmu::FmuOptions unit{.name = options.code.name, .units = given};
   for (const auto& [column, text] : info.units) {
     unit.units.try_emplace(column, Unit::parse(text));

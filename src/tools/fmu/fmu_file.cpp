@@ -6,15 +6,15 @@
 #include <zip.h>
 
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "file/atomic_file.hpp"
+#include "file/content.hpp"
 #include "file/plugin.hpp"
+#include "file/tuning.hpp"
 #include "fmu/guid.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
@@ -31,14 +31,6 @@ constexpr const char* kPlatform = "linux64";  // FMI 2.0.4, chapter 2.3
 #else
 constexpr const char* kPlatform = "aarch64-linux";  // FMI 3.0, chapter 2.5.1.4: FMI 2.0 has none
 #endif
-
-std::string read_bytes(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw Failure(fmt::format("{} cannot be read", file.string()));
-  }
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // An archive in memory, so that the file appears whole or not at all. Entries have the same time
 // everywhere: the same model gives the same bytes.
@@ -211,7 +203,8 @@ void write_fmu(const fs::path& fmu, const TrainedModel& model, const FmuOptions&
   const std::string text = format::model_json(model);
   const std::string description = model_description(Vehicle(model), guid_of(text), options);
   const std::string shared_object =
-      read_bytes(file::find_plugin(fmt::format("{}.so", kModelIdentifier)));
+      file::read_content(file::find_plugin(fmt::format("{}.so", kModelIdentifier)),
+                         "the shared object of units of FMI", file::kTuning.document_bytes);
   ZipArchive archive;
   archive.add("modelDescription.xml", description);
   archive.add("resources/model.json", text);

@@ -24,12 +24,6 @@ OpenLoop simulated(const TrainedModel& model) {
   return loop;
 }
 
-std::vector<std::size_t> integrated_inputs(const OpenLoop& loop) {
-  std::vector<std::size_t> inputs = loop.states;
-  inputs.insert(inputs.end(), loop.attitude.inputs().begin(), loop.attitude.inputs().end());
-  return inputs;
-}
-
 // Commands that were logged late belong to their own moment here; commands that act late keep the
 // delay.
 Actuator with_delay(Actuator actuator, const Alignment& alignment) {
@@ -42,10 +36,10 @@ Actuator with_delay(Actuator actuator, const Alignment& alignment) {
 Vehicle::Vehicle(TrainedModel model)
     : model_(std::make_shared<const TrainedModel>(std::move(model))),
       rollout_(simulated(*model_), {.step_s = kStepS, .between = CommandPath::linear}),
-      integrated_(integrated_inputs(open_loop(*model_))),
       x_(model_->input_names.size()) {
   for (std::size_t i = 0; i < model_->input_names.size(); ++i) {
-    const bool is_state = std::ranges::find(integrated_, i) != integrated_.end();
+    const bool is_state =
+        std::ranges::find(rollout_.integrated(), i) != rollout_.integrated().end();
     variables_.push_back({model_->input_names[i], is_state ? Role::state : Role::input});
   }
   const Alignment& alignment = model_->alignment;
@@ -74,7 +68,7 @@ Vehicle::Vehicle(TrainedModel model)
 
 void Vehicle::add_pose() {
   std::array<std::optional<std::size_t>, 3> found{};
-  for (const std::size_t input : integrated_) {
+  for (const std::size_t input : rollout_.integrated()) {
     const std::optional<std::size_t> axis = velocity_axis(model_->input_names[input]);
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (axis == kPlanarAxes[k]) {
@@ -150,7 +144,7 @@ void Vehicle::move_pose(double dt_s) {
 }
 
 void Vehicle::take_states() {
-  for (const std::size_t input : integrated_) {
+  for (const std::size_t input : rollout_.integrated()) {
     values_[input] = x_[input] = rollout_.inputs()[input];
   }
 }

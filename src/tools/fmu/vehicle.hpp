@@ -74,8 +74,7 @@ class Vehicle {
   std::shared_ptr<const TrainedModel> model_;  ///< shared by all copies
   Rollout rollout_;
   std::vector<Variable> variables_;
-  std::vector<double> values_;           ///< of the variables
-  std::vector<std::size_t> integrated_;  ///< inputs of the model
+  std::vector<double> values_;  ///< of the variables
   std::size_t target_count_ = 0;
   struct Driven {
     std::size_t input;

@@ -373,6 +373,17 @@ TEST(Fmu, TheSameModelGivesTheSameBytes) {
   EXPECT_EQ(bytes("a.fmu"), bytes("b.fmu"));
 }
 
+TEST(Fmu, TheSharedObjectNeedsNoReaderOfLogs) {
+  const TemporaryFolder folder;
+  fmu::write_fmu(folder / "a.fmu", boat(), {});
+  const std::string object = entry_of(folder / "a.fmu", "binaries/linux64/kelpie_vehicle.so");
+  EXPECT_NE(object.find("libstdc++.so"), std::string::npos);
+  for (const char* const library :
+       {"libsqlite3.so", "libmatio.so", "libyaml-cpp.so", "libfmt.so"}) {
+    EXPECT_EQ(object.find(library), std::string::npos) << library;
+  }
+}
+
 TEST(Fmu, AModelThatCannotBeRolledOutIsNoUnit) {
   DynamicsModel model({"a", "b"}, {"c"}, ModelSettings::from_preset("small", 1));
   RandomStream random(1, "boat");
