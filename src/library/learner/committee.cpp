@@ -14,7 +14,8 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"learner", "precise", "memory", "line", "mean"};
+constexpr std::array<std::string_view, 6> kNames{"learner", "precise", "memory",
+                                                 "physics", "line",    "mean"};
 
 // Samples of many inputs lie farther apart.
 double input_width(std::size_t inputs) {
@@ -40,12 +41,37 @@ SparseRegressionSettings memory_settings(std::size_t inputs, std::size_t terms,
           .gamma = kOnline.members.memory_gamma * input_width(inputs)};
 }
 
+SparseRegressionSettings physics_settings(std::size_t terms) {
+  return {.terms = terms, .term_prior = kOnline.members.physics_term_prior};
+}
+
+const FunctionMix::Member* find_member(const FunctionMix& mix, std::string_view name) {
+  const auto found = std::ranges::find(mix.members, name, &FunctionMix::Member::name);
+  return found == mix.members.end() ? nullptr : &*found;
+}
+
+// A mix of an earlier version has no `physics`.
+bool is_of_committee(const FunctionMix& mix) {
+  return std::ranges::all_of(kNames, [&](std::string_view name) {
+    return name == "physics" || find_member(mix, name) != nullptr;
+  });
+}
+
+// In place of a lacking `physics`, half of `memory`.
+WeightedFunction in_mix(const FunctionMix& mix, std::string_view name) {
+  const bool lacking = find_member(mix, "physics") == nullptr;
+  const bool halved = lacking && (name == "physics" || name == "memory");
+  const FunctionMix::Member& found = *find_member(mix, halved ? "memory" : name);
+  return {.share = halved ? 0.5 * found.share : found.share, .function = &found.function};
+}
+
 }  // namespace
 
 Committee::Fits::Fits(std::size_t inputs, std::size_t terms, std::size_t line_terms,
                       const OnlineSvrSettings& learner)
     : precise(inputs, terms, precise_settings(inputs, terms, learner)),
       memory(inputs, terms, memory_settings(inputs, terms, learner)),
+      physics(inputs, terms, physics_settings(terms)),
       line(inputs, terms, {.terms = line_terms}),
       mean(inputs, terms, {}) {}
 
@@ -73,7 +99,8 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
            SvrFunction::bytes(inputs, terms, places);
     for (const SparseRegressionSettings& fit :
          {precise_settings(inputs, terms, settings), memory_settings(inputs, terms, settings),
-          SparseRegressionSettings{.terms = plan.line}, SparseRegressionSettings{}}) {
+          physics_settings(terms), SparseRegressionSettings{.terms = plan.line},
+          SparseRegressionSettings{}}) {
       sum += SparseRegression::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
              SvrFunction::bytes(inputs, terms, fit.most_centres);
     }
@@ -149,6 +176,7 @@ void Committee::reset() {
 void Committee::reset_for_new_vehicle() {
   fits_->precise.weaken();
   fits_->memory.clear();
+  fits_->physics.clear();
   fits_->line.clear();
   fits_->mean.clear();
 }
@@ -202,7 +230,7 @@ void Committee::resume_from(const FunctionMix& said, const PastModel::Completion
   if (alone()) {
     return;
   }
-  if (said.members.size() != kMembers) {
+  if (!is_of_committee(said)) {
     reset();
     relearn_buffer(1);
     while (!to_learn_.done()) {
@@ -210,12 +238,12 @@ void Committee::resume_from(const FunctionMix& said, const PastModel::Completion
     }
     return;
   }
+  std::array<double, kMembers> shares{in_mix(said, kNames[0]).share};
   for (std::size_t k = 1; k < kMembers; ++k) {
-    const SvrFunction& function = said.members[k].function;
-    fits_->all()[k - 1]->imitate(function, places_of(function, complete));
+    const auto [share, function] = in_mix(said, kNames[k]);
+    fits_->all()[k - 1]->imitate(*function, places_of(*function, complete));
+    shares[k] = share;
   }
-  std::array<double, kMembers> shares{};
-  std::ranges::transform(said.members, shares.begin(), &FunctionMix::Member::share);
   shares_.resume_from(shares);
   seen_.resume_from(said.limits);
   freeze_copies();
@@ -315,7 +343,8 @@ void Committee::shift(std::span<const double> step, const Decision& news) {
   if (alone()) {
     return;
   }
-  for (SparseRegression* const fit : {&fits_->precise, &fits_->memory, &fits_->line}) {
+  for (SparseRegression* const fit :
+       {&fits_->precise, &fits_->memory, &fits_->physics, &fits_->line}) {
     fit->shift(step);
     if (news.changed) {
       fit->doubt_terms(kOnline.members.kept);

@@ -26,7 +26,8 @@ struct LearnerState;
 ///     precise   kernel least squares over all samples since the start, for logs with little
 ///               noise: SparseRegression with up to 300 centres and a small ridge
 ///     memory    the same for noisy logs: fewer centres and a larger ridge
-///     line      the same without a kernel: linear in the physics terms
+///     physics   the same without a kernel: linear in all physics terms
+///     line      the same in x, x|x| and the products of velocities alone
 ///     mean      the mean of the targets, for axes without predictable structure
 ///
 /// The learner reports a change of the vehicle or the withdrawal of a change. The other members
@@ -106,7 +107,7 @@ class Committee final : public OnlineRegressor {
                            const Plan& plan);
 
  private:
-  static constexpr std::size_t kMembers = 5;
+  static constexpr std::size_t kMembers = 6;
   using WeightedFunctions = std::array<WeightedFunction, kMembers>;
 
   /// The members beside the learner.
@@ -115,13 +116,16 @@ class Committee final : public OnlineRegressor {
          const OnlineSvrSettings& learner);
 
     /// In the order of the shares.
-    std::array<SparseRegression*, kMembers - 1> all() { return {&precise, &memory, &line, &mean}; }
+    std::array<SparseRegression*, kMembers - 1> all() {
+      return {&precise, &memory, &physics, &line, &mean};
+    }
     std::array<const SparseRegression*, kMembers - 1> all() const {
-      return {&precise, &memory, &line, &mean};
+      return {&precise, &memory, &physics, &line, &mean};
     }
 
     SparseRegression precise;
     SparseRegression memory;
+    SparseRegression physics;
     SparseRegression line;
     SparseRegression mean;
   };

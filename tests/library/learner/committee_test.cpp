@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "allocation_count.hpp"
+#include "learner/sparse_regression.hpp"
 #include "streams.hpp"
 
 namespace kelpie::committee_test {
@@ -110,6 +112,49 @@ TEST(Committee, WhereNothingCanBeKnownNothingIsSaid) {
   EXPECT_GT(r_squared_on(committee, others), -0.03);
 }
 
+// Many commands, whose products count: a kernel in so many dimensions knows only places seen.
+TEST(Committee, WhatIsLinearInItsTermsIsLearnedAsLeastSquaresDo) {
+  constexpr std::size_t kInputs = 12;
+  constexpr std::size_t kTerms = kInputs * (kInputs + 1) / 2;
+  RandomStream random(31, "products");
+  std::vector<double> weights(kTerms);
+  std::ranges::generate(weights, [&] { return 0.15 * random.normal(); });
+  const auto drive = [&](std::size_t samples) {
+    std::vector<Sample> stream;
+    std::vector<double> z(kInputs);
+    for (std::size_t i = 0; i < samples; ++i) {
+      Sample sample{.z = {}, .y = 0.1 * random.normal(), .t = 0.05 * static_cast<double>(i)};
+      for (double& value : z) {
+        value = 0.98 * value + 0.2 * random.normal();
+      }
+      sample.z = z;
+      for (std::size_t a = 0; a < kInputs; ++a) {
+        for (std::size_t b = a; b < kInputs; ++b) {
+          sample.y += weights[sample.z.size() - kInputs] * z[a] * z[b];
+          sample.z.push_back(z[a] * z[b]);
+        }
+      }
+      stream.push_back(sample);
+    }
+    return stream;
+  };
+  OnlineSvrSettings settings = settings_for_plants();
+  settings.lambda = 0.5;
+  Committee committee(kInputs, kTerms, settings, {.alone = false, .line = kInputs});
+  SparseRegression least_squares(kInputs, kTerms, {.terms = kTerms, .term_prior = 0.02});
+  for (const Sample& sample : drive(1500)) {
+    committee.update(sample.z, sample.y, sample.t);
+    least_squares.update(sample.z, sample.y);
+  }
+  double error = 0.0;
+  double of_least_squares = 0.0;
+  for (const Sample& sample : drive(1500)) {
+    error += std::abs(sample.y - committee.predict(sample.z));
+    of_least_squares += std::abs(sample.y - least_squares.model()(sample.z));
+  }
+  EXPECT_LT(error, 1.1 * of_least_squares);
+}
+
 TEST(Committee, WhatItSaysStaysWithinTheTargetsSeen) {
   Committee committee = make();
   show(committee, with_terms(wandering_stream(7, 500)));
@@ -123,7 +168,7 @@ TEST(Committee, ItsCopySaysTheSameToTheLastBit) {
   Committee committee = make();
   show(committee, with_terms(wandering_stream(8, 500)));
   const FunctionMix copy = committee.function_mix();
-  EXPECT_EQ(copy.members.size(), 5U);
+  EXPECT_EQ(copy.members.size(), 6U);
   for (const Sample& sample : with_terms(wandering_stream(9, 100))) {
     ASSERT_EQ(copy(sample.z), committee.predict(sample.z));
     std::array<double, 5> gradient{};

@@ -2,8 +2,10 @@
 // A model that goes on where a trained one stands.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
@@ -71,6 +73,22 @@ TEST(GoOnWith, ACommitteeDoesSo) {
     for (std::size_t k = 0; k < shares.size(); ++k) {
       EXPECT_NEAR(shares[k].share, before.axes[axis].function.members[k].share, 1e-6);
     }
+  }
+}
+
+TEST(GoOnWith, ACommitteeOfAVersionWithoutPhysicsKnowsWhatItKnew) {
+  const Drive drive = testing::drive(1, 900);
+  TrainedModel before = learned(drive, settings_of("committee")).trained();
+  for (Snapshot& axis : before.axes) {
+    std::vector<FunctionMix::Member>& members = axis.function.members;
+    const auto physics = std::ranges::find(members, "physics", &FunctionMix::Member::name);
+    ASSERT_NE(physics, members.end());
+    members.front().share += physics->share;
+    members.erase(physics);
+  }
+  const DynamicsModel after = DynamicsModel::resume_from(before);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    EXPECT_LT(difference(before, after, drive, axis), 0.05) << "axis " << axis;
   }
 }
 
