@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/glossary.md defines the noun at the end of every public type's name.
+// docs/reference/glossary.md defines the noun at the end of every public type's name.
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,14 @@
 namespace kelpie::glossary_test {
 namespace {
 
+const house_test::fs::path kGlossary = house_test::kRoot / "docs/reference/glossary.md";
+
 // Lower-case words of the first column of the glossary's tables.
 std::set<std::string> glossary() {
   static const std::regex kRow(R"(\| ([^|]+) \|.*)");
   static const std::regex kWord("[a-z]+");
   std::set<std::string> nouns;
-  for (const std::string& line : house_test::lines_of(house_test::kRoot / "docs/glossary.md")) {
+  for (const std::string& line : house_test::lines_of(kGlossary)) {
     if (std::smatch row; std::regex_match(line, row, kRow)) {
       const std::string cell = row[1];
       for (std::sregex_iterator it(cell.begin(), cell.end(), kWord), end; it != end; ++it) {
@@ -53,7 +55,8 @@ TEST(Glossary, DefinesTheNounOfEveryPublicType) {
       if (std::smatch type; file.extension() == ".hpp" && std::regex_match(line, type, kType)) {
         ++seen;
         EXPECT_TRUE(is_defined(noun_of(type[2]), nouns))
-            << type[2] << " of " << file << ": docs/glossary.md lacks '" << noun_of(type[2]) << "'";
+            << type[2] << " of " << file << ": " << kGlossary << " lacks '" << noun_of(type[2])
+            << "'";
       }
     }
   }
