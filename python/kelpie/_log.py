@@ -49,7 +49,7 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
         apart by content.
     config : TOML file whose [log] says what to take, and how signals become rows at one rate
         (docs/howto/logs.md). Without it a CSV file is read as it is, and a recording as `kelpie
-        learn` would take it (docs/howto/templates.md).
+        learn` would take it (docs/howto/logs.md).
     columns : instead, columns of a recording as they were recorded, such as
         "/odom:twist.twist.linear.x": a row per message of the first one's topic.
     clock : "receive" or "header", whose times `columns` have.

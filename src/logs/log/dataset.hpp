@@ -57,7 +57,7 @@ struct Table {
 /// "the columns are u, v", with the first 200 names, for messages.
 std::string columns_text(const Table& table);
 
-/// Reads a CSV log with a header line, plain or packed by gzip, zstd (howto/csv.md). The separator
+/// Reads a CSV log with a header line, plain or packed by gzip, zstd (howto/logs.md). The separator
 /// (comma, semicolon or tab) is the most frequent in the header, or given by "sep=;"; lines end in
 /// LF, CRLF or CR; blank lines and lines starting with '#' are skipped but counted; names and
 /// numbers may be in double quotes, with separators and doubled quotes inside; a UTF-8 byte order

@@ -46,7 +46,7 @@ inline constexpr struct Tuning {
     double fastest_hz = 200.0;  ///< of rows, without a word; by hand
   } plausibility;
 
-  // Drafts (docs/howto/templates.md).
+  // Drafts (docs/howto/logs.md).
   double usual_rate_hz = 10.0;     ///< of rows; by hand
   double fastest_rate_hz = 50.0;   ///< of rows of a short log; by hand
   double wanted_rows = 1000.0;     ///< of a short log; by hand
