@@ -20,8 +20,8 @@ inline constexpr struct ModelTuning {
     int rate_halvings = 8;                  ///< rates tried: the whole range in 1 s to 128 s
     int delay_doublings = 6;                ///< delays tried, from half a row on
     std::size_t rows_per_coefficient = 10;  ///< least rows of a fit; by hand
-    double least_gain = 0.03;               ///< mean of logarithms; reference/files.md, Alignment
-    double gaining_share = 0.6;             ///< of the folds; docs/reference/files.md, Alignment
+    double least_gain = 0.03;               ///< mean of logarithms; method/physics.md, Alignment
+    double gaining_share = 0.6;             ///< of the folds; method/physics.md, Alignment
     double clear = 3.0;                     ///< standard errors of a gain; as above
     double slope_correlation = 0.5;         ///< least, of a velocity's slope to a target; by hand
     std::size_t most_fitted_rows = 5'000;   ///< rows per fit, for the cost; by hand
