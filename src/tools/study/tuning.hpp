@@ -11,7 +11,7 @@ namespace kelpie::study {
 inline constexpr struct Tuning {
   struct Stream {
     std::size_t looks = 200;     ///< validation points by default; the resolution of figures
-    std::size_t settled = 1000;  ///< samples before r2_min_after_1000 counts; reference/result.md
+    std::size_t settled = 1000;  ///< samples before r2_min_after_1000 counts; reference/files.md
   } stream;
 
   struct Baselines {
@@ -24,7 +24,7 @@ inline constexpr struct Tuning {
   } intervals;
 
   struct Split {
-    std::size_t pieces = 25;  ///< five held-out pieces of a short log; docs/reference/result.md
+    std::size_t pieces = 25;  ///< five held-out pieces of a short log; docs/reference/files.md
   } split;
 
   /// docs/howto/compare.md; by hand.
