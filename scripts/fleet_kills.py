@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Studies and learning runs that are killed at random moments (docs/howto/fleet.md).
+"""Studies and learning runs that are killed at random moments (docs/howto/studies.md).
 
     python3 scripts/fleet_kills.py KELPIE [STUDIES [SEED]]
 

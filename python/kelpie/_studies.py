@@ -104,7 +104,7 @@ def _describe(function: Any, command: str, first: str, page: str) -> None:
 _describe(report, "learn", "Learns a log as `kelpie learn` does, and judges what was learned.",
           "docs/reference/files.md")
 _describe(compare, "compare", "Learns a log with kelpie and with simpler models.",
-          "docs/howto/compare.md")
+          "docs/howto/studies.md")
 _describe(tune, "tune", "Searches the settings that learn one or more logs best.",
           "docs/howto/studies.md")
 _describe(identify, "identify", "Estimates masses, drags and thrusts of a vehicle from a log.",

@@ -63,7 +63,7 @@ struct Outcome {
 /// at 0.
 Outcome outcome_of(const study::StreamResult& stream, double duration_s);
 
-file::Json outcome_json(const Outcome& outcome);  ///< About 1 kB; docs/howto/study.md.
+file::Json outcome_json(const Outcome& outcome);  ///< About 1 kB; docs/howto/studies.md.
 /// Throws InputError on JSON of another form than outcome_json()'s.
 Outcome read_outcome(const file::JsonNode& node);
 

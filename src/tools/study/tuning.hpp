@@ -27,7 +27,7 @@ inline constexpr struct Tuning {
     std::size_t pieces = 25;  ///< five held-out pieces of a short log; docs/reference/files.md
   } split;
 
-  /// docs/howto/compare.md; by hand.
+  /// docs/howto/studies.md; by hand.
   struct Comparison {
     double clear_gain = 0.01;  ///< of R², mean over the axes, that a recommendation takes
     std::size_t least_inner_rows = 300;  ///< training rows for inner splits
