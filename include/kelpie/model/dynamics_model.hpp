@@ -91,7 +91,7 @@ class DynamicsModel final : public OnlineModel {
   const Diagnosis* diagnosis() const;
   std::vector<Finding> findings() const;  ///< The findings by the log's clock. Allocates.
 
-  /// The past models of an axis (docs/method/memory.md). Allocates.
+  /// The past models of an axis (docs/method/learner.md). Allocates.
   std::vector<StoredPastModel> past_models(std::size_t axis) const;
 
   /// Gives an axis past models of an earlier run, for recall when their vehicle returns. Requires

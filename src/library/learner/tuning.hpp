@@ -35,7 +35,7 @@ struct OnlineTuning {
     int recall_slices = 3;  ///< per update, since predictions are poor until the recall is done
   } task;
 
-  /// PastModels; method/memory.md: scenarios/returns.toml, seed 1, and training rows of Dagon.
+  /// PastModels; method/learner.md: scenarios/returns.toml, seed 1, and training rows of Dagon.
   struct Memory {
     double alarm = 10.0;              ///< at least four bad samples in a row [mean errors]
     std::int64_t settled = 192;       ///< samples before the usual error is known
@@ -49,7 +49,7 @@ struct OnlineTuning {
     double same_place = 0.99;         ///< κ_SE of two samples at one place: by hand
   } memory;
 
-  /// ModelTrial; docs/method/memory.md as above. In the past model's usual errors.
+  /// ModelTrial; docs/method/learner.md as above. In the past model's usual errors.
   struct Trial {
     double margin = 0.5;  ///< required advantage per sample
     double lead = 15.0;   ///< required advantage in all: at least four samples
