@@ -113,7 +113,7 @@ kelpie_status kelpie_predict_with_jacobian(const kelpie_model* model, const doub
                                            size_t inputs, double* y, size_t targets,
                                            double* jacobian);
 
-/** A prediction with its uncertainty (docs/method/uncertainty.md, docs/method/disturbance.md). */
+/** A prediction with its uncertainty (docs/method/uncertainty.md, docs/method/uncertainty.md). */
 typedef struct kelpie_prediction {
   double value;
   double lower;       /**< the interval that holds the truth with the promised share; infinite */
@@ -263,7 +263,7 @@ kelpie_status kelpie_trained_predict_with_jacobian(const kelpie_trained* model, 
                                                    size_t inputs, double* y, size_t targets,
                                                    double* jacobian);
 /** Velocities through outages of the velocity log: kelpie::DeadReckoning
- * (method/dead_reckoning.md). One thread at a time. */
+ * (method/open_loop.md). One thread at a time. */
 typedef struct kelpie_reckoning kelpie_reckoning;
 
 /** Why a velocity of the last sample doesn't count as measured; 0: measured. */

@@ -82,7 +82,7 @@ class DynamicsModel final : public OnlineModel {
   /// the next sample with the share `coverage` of the settings, provided that samples are learned
   /// one after the other; the novelty compares x with the buffer (docs/method/uncertainty.md); the
   /// disturbance is predicted for a sample `ahead_s` [s] after the last learned sample, by default
-  /// the next (docs/method/disturbance.md). Cost: three kernel rows per axis. Allocates nothing.
+  /// the next (docs/method/uncertainty.md). Cost: three kernel rows per axis. Allocates nothing.
   void predict(std::span<const double> x, std::span<Prediction> y, double ahead_s = 0.0) const;
 
   /// Changes of the vehicle with their causes, and the state of its thrusters (howto/diagnosis.md).

@@ -104,7 +104,7 @@ struct OnlineTuning {
     double early_margin = 1.0;  ///< the same for few targets [standard deviations]
   } range;
 
-  /// Disturbance; docs/method/disturbance.md: training rows, of little influence.
+  /// Disturbance; docs/method/uncertainty.md: training rows, of little influence.
   struct Disturbances {
     double lambda = 0.999;     ///< weight of a sample relative to the next
     double replaced = 10.0;    ///< forgetting per sample is limited to this multiple of its gain

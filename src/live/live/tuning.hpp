@@ -32,7 +32,7 @@ inline constexpr struct Tuning {
   double checked_rate_hz = 50.0;         ///< rows beyond tell a check no more
   std::size_t least_checked_rows = 121;  ///< at low rates: 24 windows of 5 rows
 
-  // Dead reckoning (docs/method/dead_reckoning.md#live)
+  // Dead reckoning (docs/method/open_loop.md#live)
   double between_models_s = 10.0;       ///< by the rows' clock
   double between_first_models_s = 2.0;  ///< until there is a model
   double model_delay_s = 2.0;   ///< from a row until the model before that row serves: so live and

@@ -17,7 +17,7 @@ namespace kelpie::report {
 namespace {
 
 constexpr std::string_view kDisturbanceNote =
-    "With disturbance: kelpie's prediction and the recent error (docs/method/disturbance.md). ";
+    "With disturbance: kelpie's prediction and the recent error (docs/method/uncertainty.md). ";
 constexpr std::string_view kMemberNote =
     "By how well each foretold what lay ahead, lately. Learner: the paper's, with the settings. "
     "Precise and memory: least squares on all samples, with a kernel, for little and for much "
