@@ -21,7 +21,7 @@ struct StoredPastModel;
 struct TrainedModel;
 
 /// The vehicle's dynamics, learned while it drives: accelerations (or any targets) from velocities,
-/// commands, or any inputs, one learner per axis (eq. 3). reference/sample.md shows steps of
+/// commands, or any inputs, one learner per axis (eq. 3). reference/architecture.md shows steps of
 /// update().
 ///
 ///     DynamicsModel model({"u", "v", "r", "th1", "th2", "th3"}, {"udot", "vdot", "rdot"},

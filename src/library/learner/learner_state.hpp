@@ -7,7 +7,7 @@
 
 namespace kelpie {
 
-/// The states of all mechanisms of one axis at one moment. reference/states.md lists those
+/// The states of all mechanisms of one axis at one moment. reference/architecture.md lists those
 /// that occur, and the events between them; tests/library/learner/states_test.cpp holds the list.
 struct LearnerState {
   /// The comparison of two models by the ChangeDetector.
