@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Files embedded in the program, as one C++ source: page.css, figure.js, the live page's script, and uPlot,
-# which scripts/setup.sh fetches (docs/charts.md; without uPlot, pages have tables and sentences only); the
+# which scripts/setup.sh fetches (src/tools/chart/README.md; without uPlot, pages have tables and sentences only); the
 # evaluator that every exported C file holds; and the vehicle of `kelpie live --demo`.
 set(KELPIE_UPLOT "${PROJECT_SOURCE_DIR}/build/uplot/package" CACHE PATH
     "Where the npm package uplot was unpacked")

@@ -63,7 +63,7 @@ class Queue {
 kelpie::DynamicsModel learned_from_a_pilot(ToyVehicle& vehicle) {
   kelpie::ModelSettings settings = kelpie::ModelSettings::from_preset("default", 2);
   settings.assign("buffer", "300");
-  settings.assign("fine", "0");  // smoother derivatives: docs/controller.md
+  settings.assign("fine", "0");  // smoother derivatives: docs/howto/controller.md
   kelpie::DynamicsModel model({"u", "r", "n1", "n2"}, {"udot", "rdot"}, settings);
   for (int i = 0; i < 2000; ++i) {
     const auto [n1, n2] = ToyVehicle::pilot(vehicle.t());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // 08: from messages to a model, live. Velocities and commands come as messages of their own, each
 // with its stamp, some late, some not at all; accelerations don't come. A SampleStream makes
-// samples of them: docs/from_topics.md says how. `kelpie learn` would make the same of a bag.
+// samples of them: docs/howto/logs.md says how. `kelpie learn` would make the same of a bag.
 //
 // Prints:
 //   u: 5950 samples, 20 messages left out as late, 1 silence, the longest 5.1 s

@@ -5,7 +5,7 @@
 
 prints, and writes to `figures/`, a file per figure: 01_udot_every_sample_as_measured_and_as.pdf and
 so on. --only 1,4 draws some of them, --from and --to a part of the x axis. The numbers are those of
-the page (docs/charts.md): every sample, which result.json doesn't hold.
+the page (src/tools/chart/README.md): every sample, which result.json doesn't hold.
 Wants Matplotlib and NumPy (Debian: python3-matplotlib).
 """
 

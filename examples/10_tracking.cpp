@@ -60,7 +60,7 @@ std::array<double, 2> model_commands(const kelpie::DynamicsModel& model, std::ar
 std::array<double, 2> follow(bool with_model) {
   kelpie::ModelSettings settings = kelpie::ModelSettings::from_preset("default", 2);
   settings.assign("buffer", "200");
-  settings.assign("fine", "0");  // smoother derivatives: docs/controller.md
+  settings.assign("fine", "0");  // smoother derivatives: docs/howto/controller.md
   kelpie::DynamicsModel model({"u", "r", "n1", "n2"}, {"udot", "rdot"}, settings);
   ToyVehicle vehicle;
   Eigen::Vector2d sum(0.0, 0.0);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A vehicle that speaks MAVLink, to try `kelpie live` without one (docs/live.md).
+"""A vehicle that speaks MAVLink, to try `kelpie live` without one (docs/howto/live.md).
 
     python3 examples/bluerov_udp.py                    # a simulated ROV at 127.0.0.1:14550
     python3 examples/bluerov_udp.py --tlog dive.tlog   # a recorded dive, as it was received

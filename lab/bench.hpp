@@ -112,7 +112,7 @@ BenchResult run_bench(const std::vector<BenchStream>& streams, const BenchPlan& 
 /// The measurements for a terminal, no line wider than 100 columns (long names are cut).
 std::string bench_table(const BenchResult& result);
 
-/// All measurements as JSON, times in µs in the order of measurement (docs/performance.md).
+/// All measurements as JSON, times in µs in the order of measurement (measured/performance.md).
 std::string bench_json(const BenchResult& result);
 
 /// Histogram and slowest updates, for a terminal.

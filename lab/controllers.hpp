@@ -93,7 +93,7 @@ struct TrackingError {
 };
 TrackingError tracking_error(const Reference& reference, const Sensed& sensed);
 
-/// Gains of a PID on acceleration, found on the nominal vehicle (docs/control.md).
+/// Gains of a PID on acceleration, found on the nominal vehicle (docs/measured/applications.md).
 struct PidGains {
   Eigen::Vector3d p{0.36, 0.25, 0.64};    ///< 1/s²
   Eigen::Vector3d d{1.1, 0.9, 1.5};       ///< 1/s

@@ -103,6 +103,6 @@ struct CaseSummary {
 std::vector<CaseSummary> summaries(const DiagnosisStudy& study);  ///< In the order of the cases.
 
 std::string diagnosis_table(const DiagnosisStudy& study);  ///< For a terminal.
-std::string diagnosis_json(const DiagnosisStudy& study);   ///< docs/diagnosis.md
+std::string diagnosis_json(const DiagnosisStudy& study);   ///< docs/howto/diagnosis.md
 
 }  // namespace kelpie::lab

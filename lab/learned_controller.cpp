@@ -193,7 +193,7 @@ std::optional<std::pair<Sensed, Eigen::Vector3d>> SlopeWindow::add(const Sensed&
 DynamicsModel untaught_model() {
   ModelSettings settings = ModelSettings::from_preset("default", kAxes);
   settings.assign("buffer", "300");
-  settings.assign("fine", "0");  // smoother derivatives (docs/controller.md)
+  settings.assign("fine", "0");  // smoother derivatives (docs/howto/controller.md)
   return {{"u", "v", "r", "th1", "th2", "th3"}, {"udot", "vdot", "rdot"}, settings};
 }
 

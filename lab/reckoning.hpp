@@ -61,7 +61,7 @@ ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& 
 /// A table per result, for a terminal.
 std::string reckoning_table(const std::vector<ReckoningResult>& results);
 
-/// All results as JSON (docs/dead_reckoning.md).
+/// All results as JSON (docs/method/open_loop.md).
 std::string reckoning_json(const std::vector<ReckoningResult>& results);
 
 }  // namespace kelpie::lab

@@ -478,7 +478,7 @@ std::string published_section(const Reproduction& result) {
   text +=
       note(fmt::format("Scored after every {}. of the steps that follow the first 100 samples. "
                        "Settings chosen on the protocol's validation rows "
-                       "(docs/reproduction.md): {}",
+                       "(docs/measured/reproduction.md): {}",
                        result.plan.published_every, result.published.front().settings));
   return text +
          chart::html_table(

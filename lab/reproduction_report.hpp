@@ -10,7 +10,7 @@ namespace kelpie::lab {
 /// The self-contained page: HTML without network access, well-formed XML.
 std::string reproduction_html(const Reproduction& result);
 
-/// The numbers as JSON (docs/reproduction.md). The same plan gives the same bytes, except for
+/// The numbers as JSON (measured/reproduction.md). The same plan gives the same bytes, except for
 /// "update_us". NaN is written as null.
 std::string reproduction_json(const Reproduction& result);
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Attacks on `kelpie live` over DDS, on this machine's loopback alone (docs/live.md).
+"""Attacks on `kelpie live` over DDS, on this machine's loopback alone (docs/howto/live.md).
 
     python3 scripts/attack_dds.py BUILD [--only NAME] [--most-mb 300] [--seed 1]
 

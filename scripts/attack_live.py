@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Attacks on a running `kelpie live`, over this machine's loopback interface only (docs/live.md).
+"""Attacks on a running `kelpie live`, over the loopback interface only (docs/howto/live.md).
 
     python3 scripts/attack_live.py KELPIE web [--count 2000]
     python3 scripts/attack_live.py KELPIE mavlink [--count 100000]

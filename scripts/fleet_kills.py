@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Studies and learning runs that are killed at random moments (docs/fleet.md).
+"""Studies and learning runs that are killed at random moments (docs/howto/studies.md).
 
     python3 scripts/fleet_kills.py KELPIE [STUDIES [SEED]]
 
@@ -10,7 +10,7 @@ gets SIGKILL, several times in a study; then the same command is given again unt
 and parts are merged. After every kill all journals have to be readable, with all results that were
 there before, and no run twice in a journal; the result has to be that of one process, but for its
 times. Before, `kelpie learn` with a checkpoint every 20 samples is killed STUDIES times and goes on
-from its checkpoint (docs/checkpoints.md): the newest checkpoint or the one before has to be whole
+from its checkpoint (docs/reference/files.md): the newest or the one before has to be whole
 after every kill, no result half written, and model and result have to be those of a run without a
 kill. Exit code 1 where something isn't so.
 """

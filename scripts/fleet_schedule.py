@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Simulates how long the runs of a study take on many ranks or in many parts (docs/fleet.md).
+"""Simulates how long the runs of a study take on ranks or in parts (docs/howto/studies.md).
 
     python3 scripts/fleet_schedule.py JOURNAL [--jobs N] [--workers 1,64,1024] [--take-ms 1]
                                       [--buffers LEARNER=SAMPLES,...]

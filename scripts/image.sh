@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Makes an OCI image of `kelpie live` with its page, for a vehicle's companion computer; the labels
-# are those of a BlueOS extension (docs/bluerov2.md). Everything in the image is a Debian package:
+# are those of a BlueOS extension (docs/howto/bluerov2.md). Everything in the image is a Debian package:
 #   cpack -G DEB in the build folder
 #   scripts/image.sh kelpie-tools_0.2.0_amd64.deb out/image
 # Needs root and the Debian packages mmdebstrap, umoci and dpkg; for another architecture

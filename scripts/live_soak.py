@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A day at sea: hours of a simulated vehicle, with faults, through `kelpie live` (docs/live.md).
+"""A day at sea: hours of a simulated vehicle with faults by `kelpie live` (docs/howto/live.md).
 
     /usr/bin/python3 scripts/live_soak.py KELPIE [HOURS [SEED [BEGIN]]]
 

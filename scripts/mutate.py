@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Damaged files of every kind, given to the command kelpie (docs/readers.md).
+"""Damaged files of every kind, given to the command kelpie (src/logs/bag/README.md).
 
     python3 scripts/mutate.py KELPIE [--mutants 3000] [--seed 1] [--jobs 2] [--seconds 3600]
                               [--keep FOLDER] [KIND...]

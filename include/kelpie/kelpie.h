@@ -12,7 +12,7 @@ extern "C" {
 /**
  * @file
  * kelpie::DynamicsModel, SharedModel and TrainedModel for C and for languages that call C. A
- * program in C links the library kelpie, Highway and the standard library of C++ (docs/install.md).
+ * program in C links the library kelpie, Highway and the library of C++ (howto/install.md).
  *
  * Names are UTF-8, times in seconds, all other numbers in the units of the log. Functions that can
  * fail return a kelpie_status; without KELPIE_OK, outputs keep their values and
@@ -48,7 +48,7 @@ enum { KELPIE_MOST_INPUTS = 64, KELPIE_MOST_TARGETS = 64 };
 
 /**
  * Makes a model of the named columns, to be freed by kelpie_free(). Velocities are recognised by
- * their names: docs/settings.md, `states`. `settings` has a line `name = value` for every setting
+ * their names: reference/settings.md, `states`. `settings` has lines `name = value` for settings
  * that differs from its default, with one value for all targets, or values for each target
  * separated by commas; the line `preset = name` gives the defaults. `settings` may be null.
  * Allocates all memory of the model, except as update() of kelpie::DynamicsModel says.
@@ -113,7 +113,7 @@ kelpie_status kelpie_predict_with_jacobian(const kelpie_model* model, const doub
                                            size_t inputs, double* y, size_t targets,
                                            double* jacobian);
 
-/** A prediction with its uncertainty (docs/uncertainty.md, docs/disturbance.md). */
+/** A prediction with its uncertainty (docs/method/uncertainty.md, docs/method/uncertainty.md). */
 typedef struct kelpie_prediction {
   double value;
   double lower;       /**< the interval that holds the truth with the promised share; infinite */
@@ -140,7 +140,7 @@ void kelpie_free_bytes(unsigned char* bytes); /**< Frees bytes of kelpie_save(),
  *  of another version are KELPIE_BAD_INPUT. */
 kelpie_status kelpie_load(const unsigned char* bytes, size_t size, kelpie_model** model);
 
-/* Changes of the vehicle with their causes (docs/diagnosis.md) */
+/* Changes of the vehicle with their causes (docs/howto/diagnosis.md) */
 
 /** A possible cause of a change, with one number as its size. */
 typedef enum kelpie_cause_kind {
@@ -187,7 +187,7 @@ typedef struct kelpie_finding {
 enum { KELPIE_MOST_FINDINGS = 64 };
 
 /** The last findings, the oldest first: writes the first `room` of them, and how many there are to
- *  `count`. None where the model knows no equations of motion (docs/diagnosis.md). `findings` may
+ *  `count`. None where the model knows no equations of motion (howto/diagnosis.md). `findings` may
  * be null without room. Allocates. */
 kelpie_status kelpie_findings(const kelpie_model* model, kelpie_finding* findings, size_t room,
                               size_t* count);
@@ -232,7 +232,7 @@ kelpie_status kelpie_shared_predict_with_jacobian(const kelpie_shared* shared, c
 /** A model as `kelpie learn` and `kelpie live` write it. */
 typedef struct kelpie_trained kelpie_trained;
 
-/** Reads the text of a model.json of `size` bytes (docs/model.md); a program reads the file itself.
+/** Reads the text of a model.json of `size` bytes (reference/files.md); a program reads the file.
  *  Other texts are KELPIE_BAD_INPUT, and the message names the key. To be freed by
  *  kelpie_free_trained(). Allocates. */
 kelpie_status kelpie_read_trained(const char* json, size_t size, kelpie_trained** model);
@@ -246,7 +246,7 @@ const char* kelpie_trained_target_name(const kelpie_trained* model, size_t i); /
 
 /** How commands were aligned before the model saw them, in words, such as "commands are taken 0.5 s
  *  later"; "" where commands are taken as they stand. Predictions take aligned commands
- *  (docs/model.md). Valid as long as the model. */
+ *  (docs/reference/files.md). Valid as long as the model. */
 const char* kelpie_trained_alignment(const kelpie_trained* model);
 
 /** Predicts all targets at x, to the last bit as the program that wrote the model. Allocates
@@ -262,8 +262,8 @@ kelpie_status kelpie_trained_assess(const kelpie_trained* model, const double* x
 kelpie_status kelpie_trained_predict_with_jacobian(const kelpie_trained* model, const double* x,
                                                    size_t inputs, double* y, size_t targets,
                                                    double* jacobian);
-/** Velocities through outages of the velocity log: kelpie::DeadReckoning (docs/dead_reckoning.md).
- *  One thread at a time. */
+/** Velocities through outages of the velocity log: kelpie::DeadReckoning
+ * (method/open_loop.md). One thread at a time. */
 typedef struct kelpie_reckoning kelpie_reckoning;
 
 /** Why a velocity of the last sample doesn't count as measured; 0: measured. */
@@ -303,7 +303,7 @@ kelpie_status kelpie_reckoning_velocity(const kelpie_reckoning* reckoning, doubl
 /** Time since the velocity log measured a velocity [s]. Requires an estimator. */
 double kelpie_reckoning_silent_s(const kelpie_reckoning* reckoning);
 
-/** What the thrusters of a vehicle can still do: kelpie::Authority (docs/diagnosis.md), as the
+/** What the thrusters of a vehicle can still do: kelpie::Authority (howto/diagnosis.md), as the
  * model knows it at the moment of the creation. */
 typedef struct kelpie_authority kelpie_authority;
 

@@ -23,7 +23,7 @@ class Allocation:
 
 
 class Authority:
-    """The effectiveness of the thrusters as a fitted model knows it now (docs/diagnosis.md).
+    """The effectiveness of the thrusters as a fitted model knows it now (docs/howto/diagnosis.md).
 
     Parameters
     ----------

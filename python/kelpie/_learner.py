@@ -59,7 +59,7 @@ class Learner(Parameters):
         Without `warmup`, the warm-up is at most n, so that few rows give a model too. Raises
         ValueError on a NaN, an infinity, other shapes or a wrong setting. Ctrl-C stops between two
         rows; earlier rows stay learned. On the log of AUV Dagon a row takes 0.2 ms per
-        target in the mean (docs/python.md).
+        target in the mean (docs/howto/python.md).
         """
         given = self._given(X, y, t, unknown, (self.inputs, self.targets))
         rows, targets = self._checked(given.X, given.y)
@@ -240,7 +240,7 @@ class Learner(Parameters):
     def diagnosis_(self) -> Optional[dict[str, Any]]:
         """Changes of the vehicle: `findings`, each with `text`, and `health` of the thrusters.
 
-        None without known velocities (docs/diagnosis.md).
+        None without known velocities (docs/howto/diagnosis.md).
         """
         model = self._fitted()
         if not isinstance(model, _kelpie.LiveModel):

@@ -45,11 +45,11 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
 
     Parameters
     ----------
-    path : a CSV file, or a recording (a rosbag2 folder, .mcap, .db3, .tlog: docs/bags.md). Told
+    path : a CSV file, or a recording (.mcap, .tlog, ...: docs/reference/formats.md). Told
         apart by content.
     config : TOML file whose [log] says what to take, and how signals become rows at one rate
-        (docs/from_topics.md). Without it a CSV file is read as it is, and a recording as `kelpie
-        learn` would take it (docs/templates.md).
+        (docs/howto/logs.md). Without it a CSV file is read as it is, and a recording as `kelpie
+        learn` would take it (docs/howto/logs.md).
     columns : instead, columns of a recording as they were recorded, such as
         "/odom:twist.twist.linear.x": a row per message of the first one's topic.
     clock : "receive" or "header", whose times `columns` have.

@@ -36,7 +36,7 @@ _FILES = {"learn": _Files("result.json", "report.html"),
 _OPTIONS = """
     Parameters
     ----------
-    log : a file (CSV, or a recording as in docs/bags.md), or columns by name: a data frame,
+    log : a file (CSV, or a recording: docs/reference/formats.md), or columns by name: a data frame,
         read_log(). A list has several logs of the same columns.
     settings : parameters of DynamicsModel, such as {{"buffer": 500}}.
     out : folder for the command's files, which are otherwise kept in the result alone.
@@ -102,13 +102,13 @@ def _describe(function: Any, command: str, first: str, page: str) -> None:
 
 
 _describe(report, "learn", "Learns a log as `kelpie learn` does, and judges what was learned.",
-          "docs/result.md")
+          "docs/reference/files.md")
 _describe(compare, "compare", "Learns a log with kelpie and with simpler models.",
-          "docs/compare.md")
+          "docs/howto/studies.md")
 _describe(tune, "tune", "Searches the settings that learn one or more logs best.",
-          "docs/tuning.md")
+          "docs/howto/studies.md")
 _describe(identify, "identify", "Estimates masses, drags and thrusts of a vehicle from a log.",
-          "docs/identify.md")
+          "docs/howto/identify.md")
 
 _VALUES = {"kelpie-result": 3, "kelpie-compare": 3, "kelpie-tune": 1, "kelpie-parameters": 6}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The street of docs/architecture.md: five buildings with rooms; a room includes only what the room
+// reference/architecture.md: five buildings with rooms; a room includes only what the room
 // may know, and lives in a namespace of its own.
 
 #include <gtest/gtest.h>

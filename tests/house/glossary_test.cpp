@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/glossary.md defines the noun at the end of every public type's name.
+// The glossary of docs/reference/architecture.md defines the noun at the end of every public
+// type's name.
 
 #include <gtest/gtest.h>
 
@@ -14,13 +15,17 @@
 namespace kelpie::glossary_test {
 namespace {
 
+const house_test::fs::path kGlossary = house_test::kRoot / "docs/reference/architecture.md";
+
 // Lower-case words of the first column of the glossary's tables.
 std::set<std::string> glossary() {
   static const std::regex kRow(R"(\| ([^|]+) \|.*)");
   static const std::regex kWord("[a-z]+");
   std::set<std::string> nouns;
-  for (const std::string& line : house_test::lines_of(house_test::kRoot / "docs/glossary.md")) {
-    if (std::smatch row; std::regex_match(line, row, kRow)) {
+  bool reached = false;
+  for (const std::string& line : house_test::lines_of(kGlossary)) {
+    reached |= line == "## Glossary";
+    if (std::smatch row; reached && std::regex_match(line, row, kRow)) {
       const std::string cell = row[1];
       for (std::sregex_iterator it(cell.begin(), cell.end(), kWord), end; it != end; ++it) {
         nouns.insert(it->str());
@@ -53,7 +58,8 @@ TEST(Glossary, DefinesTheNounOfEveryPublicType) {
       if (std::smatch type; file.extension() == ".hpp" && std::regex_match(line, type, kType)) {
         ++seen;
         EXPECT_TRUE(is_defined(noun_of(type[2]), nouns))
-            << type[2] << " of " << file << ": docs/glossary.md lacks '" << noun_of(type[2]) << "'";
+            << type[2] << " of " << file << ": " << kGlossary << " lacks '" << noun_of(type[2])
+            << "'";
       }
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// package.xml names what CMake looks for (docs/install.md, "In a ROS 2 workspace").
+// package.xml names what CMake looks for (docs/howto/install.md, "In a ROS 2 workspace").
 
 #include <gtest/gtest.h>
 

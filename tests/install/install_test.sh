@@ -139,7 +139,7 @@ if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
   done
   deb=$(find "$stage/deb" -maxdepth 1 -name "kelpie-doc_*.deb")
   dpkg-deb -c "$deb" >"$stage/kelpie-doc"
-  for file in docs/first_hour.md examples/bluerov.toml CHANGELOG.md README.md; do
+  for file in docs/howto/first_hour.md examples/bluerov.toml CHANGELOG.md README.md; do
     grep -q "/kelpie-doc/$file\$" "$stage/kelpie-doc" || fail "kelpie-doc is without $file"
   done
   deb=$(find "$stage/deb" -maxdepth 1 -name "python3-kelpie_*.deb")

@@ -13,7 +13,7 @@ import pytest
 from conftest import SOURCE_DIR
 
 TAKEN = ["CMakeLists.txt", "LICENSE", "MANIFEST.in", "pyproject.toml", "setup.py", "cmake",
-         "include", "python", "src", "docs/python.md"]
+         "include", "python", "src", "docs/howto/python.md"]
 PIP = [sys.executable, "-m", "pip"]
 OFFLINE = ["--no-build-isolation", "--no-index", "--no-deps"]
 
@@ -21,7 +21,7 @@ OFFLINE = ["--no-build-isolation", "--no-index", "--no-deps"]
 @pytest.fixture
 def source(tmp_path):
     folder = tmp_path / "source"
-    (folder / "docs").mkdir(parents=True)
+    (folder / "docs/howto").mkdir(parents=True)
     for name in TAKEN:
         copy = shutil.copytree if (SOURCE_DIR / name).is_dir() else shutil.copy
         copy(SOURCE_DIR / name, folder / name)

@@ -77,7 +77,7 @@ struct OnlineSvrSettings {
 };
 
 /// The table of the fields: source of config files, --set, the printed defaults and
-/// docs/settings.md.
+/// docs/reference/settings.md.
 std::span<const Setting<OnlineSvrSettings>> online_svr_fields();
 
 }  // namespace kelpie

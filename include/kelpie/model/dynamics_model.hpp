@@ -21,7 +21,7 @@ struct StoredPastModel;
 struct TrainedModel;
 
 /// The vehicle's dynamics, learned while it drives: accelerations (or any targets) from velocities,
-/// commands, or any inputs, one learner per axis (eq. 3). docs/sample.md shows the steps of
+/// commands, or any inputs, one learner per axis (eq. 3). reference/architecture.md shows steps of
 /// update().
 ///
 ///     DynamicsModel model({"u", "v", "r", "th1", "th2", "th3"}, {"udot", "vdot", "rdot"},
@@ -80,18 +80,18 @@ class DynamicsModel final : public OnlineModel {
 
   /// Values with intervals, novelty and disturbance, in the units of the log: the interval holds
   /// the next sample with the share `coverage` of the settings, provided that samples are learned
-  /// one after the other; the novelty compares x with the buffer (docs/uncertainty.md); the
+  /// one after the other; the novelty compares x with the buffer (docs/method/uncertainty.md); the
   /// disturbance is predicted for a sample `ahead_s` [s] after the last learned sample, by default
-  /// the next (docs/disturbance.md). Cost: three kernel rows per axis. Allocates nothing.
+  /// the next (docs/method/uncertainty.md). Cost: three kernel rows per axis. Allocates nothing.
   void predict(std::span<const double> x, std::span<Prediction> y, double ahead_s = 0.0) const;
 
-  /// Changes of the vehicle with their causes, and the state of its thrusters (docs/diagnosis.md).
+  /// Changes of the vehicle with their causes, and the state of its thrusters (howto/diagnosis.md).
   /// Null where the inputs that the targets accelerate are unknown, or where the equations of
   /// motion would have more than kMostTerms terms. Times are the model's.
   const Diagnosis* diagnosis() const;
   std::vector<Finding> findings() const;  ///< The findings by the log's clock. Allocates.
 
-  /// The past models of an axis (docs/memory.md). Allocates.
+  /// The past models of an axis (docs/method/learner.md). Allocates.
   std::vector<StoredPastModel> past_models(std::size_t axis) const;
 
   /// Gives an axis past models of an earlier run, for recall when their vehicle returns. Requires

@@ -58,7 +58,7 @@ struct TrainedModel {
                              std::span<double> jacobian) const;
 };
 
-/// Reads the text of a model.json (docs/model.md), as `kelpie learn`, `kelpie live` and Python
+/// Reads the text of a model.json (reference/files.md), as `kelpie learn`, `kelpie live` and Python
 /// write it; predictions are those of the program that wrote it, to the last bit. The library reads
 /// no files; `source` names the text in messages. Throws InputError (`source`, key) on invalid
 /// JSON, another format, a newer version, a missing key, inconsistent sizes, or impossible values.

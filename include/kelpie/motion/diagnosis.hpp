@@ -65,7 +65,7 @@ struct Finding {
 /// Detects changes of a vehicle and names their causes. Fossen's equations of motion are fitted by
 /// least squares to all axes at once. When the rows of the last minute contradict earlier rows, the
 /// single cause or the pair of causes with the highest likelihood is reported, with sizes.
-/// docs/diagnosis.md.
+/// docs/howto/diagnosis.md.
 ///
 ///     Diagnosis diagnosis(6, {0, 1, 2}, {0, 1, 5});   // u, v, r and three thrusters
 ///     diagnosis.update(x, y, t);                      // at every sample, in the log's units

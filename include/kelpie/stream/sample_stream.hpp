@@ -19,7 +19,7 @@ struct SampleRow {
 };
 
 /// Makes samples from messages, one by one, as a StreamPlan says: frames, lever arm, lags,
-/// interpolation, derivatives (docs/from_topics.md).
+/// interpolation, derivatives (docs/howto/logs.md).
 ///
 /// The first row is made when every source has delivered. A row is emitted, in time order, as soon
 /// as every source has a sample at or after the time of the row (centred derivatives: half a window

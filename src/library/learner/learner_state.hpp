@@ -7,8 +7,8 @@
 
 namespace kelpie {
 
-/// The states of all mechanisms of one axis at one moment. docs/states.md lists the combinations
-/// that occur and the events between them; tests/library/learner/states_test.cpp holds the list.
+/// The states of all mechanisms of one axis at one moment. reference/architecture.md lists those
+/// that occur, and the events between them; tests/library/learner/states_test.cpp holds the list.
 struct LearnerState {
   /// The comparison of two models by the ChangeDetector.
   enum class Comparison : std::uint8_t {

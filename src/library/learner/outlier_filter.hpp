@@ -17,7 +17,7 @@ namespace kelpie {
 ///
 /// `iqr` (eq. 12 as written): residuals outside [q1 − 1.5 (q3 − q1), q3 + 1.5 (q3 − q1)]. Free
 /// support vectors have |e| = ε; with few support vectors at the bound the quartiles collapse to
-/// ±ε, and the rule flags every support vector at the bound: see docs/method.md.
+/// ±ε, and the rule flags every support vector at the bound: see docs/method/learner.md.
 ///
 /// `robust`: a support vector is an outlier if its weight is at ±C, that is, its neighbours
 /// contradict the sample up to the bound, and its residual exceeds ε + factor · s. The scale s is

@@ -27,7 +27,7 @@ namespace kelpie {
 ///     any state                                   → settling  a challenger took over
 ///                                                 → on_trial  alert of another axis
 ///
-/// A trial begins with the latest samples, from the start of the grown errors. docs/states.md has
+/// A trial begins with the latest samples, from the start of grown errors. reference/architecture.md has
 /// the states together with the other mechanisms.
 ///
 /// The model in service is due for a copy 192 samples after the last of these events and then every

@@ -8,7 +8,7 @@ namespace kelpie {
 
 /// The behavioural constants of the learner of one axis, by mechanism, with unit and origin. Sizes
 /// of windows and blocks stand with their arrays. "Training rows" are the training rows of the real
-/// and simulated logs of docs/accuracy.md; "by hand" means without a recorded measurement.
+/// and simulated logs of docs/measured/accuracy.md; "by hand" means without a recorded measurement.
 struct OnlineTuning {
   /// ErrorAlarm: CUSUM of |error| in usual errors.
   struct Alarm {
@@ -16,7 +16,7 @@ struct OnlineTuning {
     double drift = 2.0;  ///< subtracted per sample [usual errors]: by hand
   } alarm;
 
-  /// ChangeDetector; docs/method.md, "When the vehicle changes": training rows.
+  /// ChangeDetector; docs/method/learner.md, "When the vehicle changes": training rows.
   struct Change {
     double alarm = 20.0;             ///< at least seven bad samples in a row [usual misfits]
     int burn_in = 20;                ///< samples a challenger learns before the comparison
@@ -29,13 +29,13 @@ struct OnlineTuning {
     std::size_t misfit_every = 16;   ///< residuals between two medians: by hand
   } change;
 
-  /// AdaptiveSvr: long tasks; chosen by the time of an update, docs/performance.md.
+  /// AdaptiveSvr: long tasks; chosen by the time of an update, docs/measured/performance.md.
   struct Task {
     int caught_up = 2;      ///< samples per update, one more than can arrive
     int recall_slices = 3;  ///< per update, since predictions are poor until the recall is done
   } task;
 
-  /// PastModels; docs/memory.md: scenarios/returns.toml, seed 1, and training rows of Dagon.
+  /// PastModels; method/learner.md: scenarios/returns.toml, seed 1, and training rows of Dagon.
   struct Memory {
     double alarm = 10.0;              ///< at least four bad samples in a row [mean errors]
     std::int64_t settled = 192;       ///< samples before the usual error is known
@@ -49,14 +49,14 @@ struct OnlineTuning {
     double same_place = 0.99;         ///< κ_SE of two samples at one place: by hand
   } memory;
 
-  /// ModelTrial; docs/memory.md as above. In the past model's usual errors.
+  /// ModelTrial; docs/method/learner.md as above. In the past model's usual errors.
   struct Trial {
     double margin = 0.5;  ///< required advantage per sample
     double lead = 15.0;   ///< required advantage in all: at least four samples
     double fits = 2.0;    ///< largest mean error
   } trial;
 
-  /// Committee and its SparseRegression members; docs/committee.md: 36 axes of nine vehicles.
+  /// Committee and its SparseRegression members; method/committee.md: 36 axes of nine vehicles.
   struct Members {
     std::size_t precise_centres = 300;
     double precise_gamma = 0.1;        ///< γ for six inputs
@@ -87,7 +87,7 @@ struct OnlineTuning {
     double clip = 3.0;          ///< largest error [usual errors]: by hand
   } evidence;
 
-  /// MemberShares and CalibrationSlope; docs/committee.md as above.
+  /// MemberShares and CalibrationSlope; docs/method/committee.md as above.
   struct Shares {
     double learning_rate = 0.15;  ///< η
     double keep = 0.98;           ///< λ per block: a memory of 50 blocks
@@ -105,7 +105,7 @@ struct OnlineTuning {
     double early_margin = 1.0;  ///< the same for few targets [standard deviations]
   } range;
 
-  /// Disturbance; docs/disturbance.md: training rows, of little influence.
+  /// Disturbance; docs/method/uncertainty.md: training rows, of little influence.
   struct Disturbances {
     double lambda = 0.999;     ///< weight of a sample relative to the next
     double replaced = 10.0;    ///< forgetting per sample is limited to this multiple of its gain
@@ -121,7 +121,7 @@ struct OnlineTuning {
     double trust_memory = 50.0;  ///< suspect targets
   } disturbance;
 
-  /// ConformalInterval; docs/uncertainty.md: windows of 100, 250 and 500 on training rows.
+  /// ConformalInterval; docs/method/uncertainty.md: windows of 100, 250 and 500 on training rows.
   struct Interval {
     double stretch = 500.0;       ///< samples over which the best expert may change (section 3)
     std::size_t min_errors = 30;  ///< errors before an interval: by hand
@@ -132,10 +132,10 @@ struct OnlineTuning {
     double most_self = 1e6;  ///< largest κ(x, x): above it rounding hides the other kernel parts
     int most_waiting = 8;    ///< samples of an unfinished update, the largest age of the model
     std::size_t slice_of_rows = 25'000;  ///< kernel elements per slice: by the time of an update
-    std::size_t element_work = 30;    ///< work of a kernel element [numbers], docs/performance.md
-    std::size_t outlier_least = 64;   ///< errors before s is known: by hand
-    std::size_t outlier_every = 8;    ///< errors between two medians: by hand
-    std::size_t quartiles_least = 4;  ///< support vectors of `iqr`
+    std::size_t element_work = 30;       ///< of a kernel element [numbers], measured/performance.md
+    std::size_t outlier_least = 64;      ///< errors before s is known: by hand
+    std::size_t outlier_every = 8;       ///< errors between two medians: by hand
+    std::size_t quartiles_least = 4;     ///< support vectors of `iqr`
   } paper;
 
   /// RecursiveLeastSquares: by hand.

@@ -32,7 +32,7 @@ DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
       interval_(shared.coverage),
       corrected_interval_(shared.coverage) {}
 
-// The way of a sample through one axis (docs/sample.md).
+// The way of a sample through one axis (docs/reference/architecture.md).
 Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   Decision decision = Scaled::update(x, y, t);  // check, scale, predict, learn
   score(decision, y, t);

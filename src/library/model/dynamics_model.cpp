@@ -248,7 +248,7 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                });
 }
 
-// The way of a sample (docs/sample.md).
+// The way of a sample (docs/reference/architecture.md).
 void DynamicsModel::update(std::span<const double> x, std::span<const double> y, double t,
                            const AxisDone& done) {
   Parts& model = *parts_;

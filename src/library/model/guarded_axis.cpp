@@ -118,7 +118,7 @@ void GuardedAxis::learn_held_back() {
   trusted().learn_held_back();
 }
 
-// The way of a sample through the guard (docs/sample.md).
+// The way of a sample through the guard (docs/reference/architecture.md).
 Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   trusted_last_ = true;
   if (!guarded_ || !valid_sample(x, arguments_.inputs, y, t)) {

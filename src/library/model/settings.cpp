@@ -34,10 +34,10 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      kScale},
     {"terms",
      "φ of the kernel κ_SE + fine κ_SE^32 + λ φᵀφ': a set by name, or formulas over the columns "
-     "(docs/physics.md)",
-     Setting<SharedSettings>::Text{
-         &SharedSettings::terms,
-         "auto, auto:degrees, none, linear, quadratic, fossen, manoeuvring, 6dof, or formulas separated by ;"},
+     "(docs/method/physics.md)",
+     Setting<SharedSettings>::Text{&SharedSettings::terms,
+                                   "auto, auto:degrees, none, linear, quadratic, fossen, "
+                                   "manoeuvring, 6dof, or formulas separated by ;"},
      {},
      kEssential,
      {.with = "lambda", .values = "0"}},
@@ -56,7 +56,7 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      kScale,
      kWithGivenScale},
     {"coverage",
-     "share of samples that the interval around their prediction is to hold (docs/uncertainty.md)",
+     "share of samples that the interval around a prediction holds (docs/method/uncertainty.md)",
      &SharedSettings::coverage,
      {.low = 0.5, .high = 0.99},
      kEssential},
@@ -90,7 +90,7 @@ ModelSettings small_preset(std::size_t axes) {
 }
 
 // Table I of the paper. Its γ can't be meant as eq. (6) has it: read as a reciprocal it works, see
-// docs/method.md.
+// docs/method/learner.md.
 ModelSettings paper_preset(std::size_t axes) {
   constexpr std::array<double, kPlaneAxes> kEpsilon{0.1, 0.001, 0.1};
   constexpr std::array<double, kPlaneAxes> kGamma{1.0 / 100.0, 1.0 / 40.0, 1.0 / 20.0};

@@ -20,9 +20,9 @@ inline constexpr struct ModelTuning {
     int rate_halvings = 8;                  ///< rates tried: the whole range in 1 s to 128 s
     int delay_doublings = 6;                ///< delays tried, from half a row on
     std::size_t rows_per_coefficient = 10;  ///< least rows of a fit; by hand
-    double least_gain = 0.03;               ///< mean of logarithms; docs/model.md, Alignment
-    double gaining_share = 0.6;             ///< of the folds; docs/model.md, Alignment
-    double clear = 3.0;                     ///< standard errors of a gain; docs/model.md, Alignment
+    double least_gain = 0.03;               ///< mean of logarithms; method/physics.md, Alignment
+    double gaining_share = 0.6;             ///< of the folds; method/physics.md, Alignment
+    double clear = 3.0;                     ///< standard errors of a gain; as above
     double slope_correlation = 0.5;         ///< least, of a velocity's slope to a target; by hand
     std::size_t most_fitted_rows = 5'000;   ///< rows per fit, for the cost; by hand
     double rounding = 1e-6;                 ///< of a target's variance: smaller errors are equal
@@ -95,16 +95,16 @@ inline constexpr struct ModelTuning {
     double memory = 1000.0;      ///< samples or steps, mean of errors; by hand
     double block_s = 10.0;       ///< s, blocks of errors that give their duration; by hand
     double block_memory = 50.0;  ///< blocks; by hand
-    double products = 0.1;  ///< of the accelerations; docs/rollouts.md: from 0.01, 0.03, 0.1, 0.3
-    double most_alike = 0.98;         ///< correlation of two errors; less certain is what is larger
-    double match = 0.02;              ///< of the logarithm of the gain, per unit of correlation
-    double longest_window_s = 20.0;   ///< s, twice the window; docs/rollouts.md
+    double products = 0.1;     ///< of accelerations; method/open_loop.md: from 0.01, 0.03, 0.1, 0.3
+    double most_alike = 0.98;  ///< correlation of two errors; less certain is what is larger
+    double match = 0.02;       ///< of the logarithm of the gain, per unit of correlation
+    double longest_window_s = 20.0;   ///< s, twice the window; docs/method/open_loop.md
     std::int64_t few = 20;            ///< weight of errors before a change, in values; by hand
     std::int64_t steps_per_term = 3;  ///< before weights are known; by hand
-    double before_s = 25.0;           ///< s, weight of steps before a change; docs/rollouts.md
+    double before_s = 25.0;           ///< s, weight of steps before a change; method/open_loop.md
   } steady;
 
-  /// ChangeMonitor; docs/committee.md, Change: a prototype on training rows of 24 streams.
+  /// ChangeMonitor; docs/method/committee.md, Change: a prototype on training rows of 24 streams.
   struct Change {
     double step_s = 0.2;             ///< s between two rows that count; by hand
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
@@ -132,7 +132,7 @@ inline constexpr struct ModelTuning {
 
   /// Practice of rollouts (model/open_loop_practice.hpp).
   struct Practice {
-    std::size_t stretches = 24;  ///< that count; docs/rollouts.md: from 12, 16, 24, 32
+    std::size_t stretches = 24;  ///< that count; docs/method/open_loop.md: from 12, 16, 24, 32
     double assumed = 0.5;   ///< stretches that say nothing against half and half, and the change
     std::size_t few = 3;    ///< stretches before a change of the vehicle that count; by hand
     double coverage = 0.9;  ///< of the errors, within the bands
@@ -147,9 +147,9 @@ inline constexpr struct ModelTuning {
     double probe = 1e-4;   ///< of the range seen, step of numerical slopes; by hand
   } rollout;
 
-  /// The limit of the work of an update (model/work_limit.hpp, docs/performance.md).
+  /// The limit of the work of an update (model/work_limit.hpp, docs/measured/performance.md).
   struct Work {
-    double numbers = 10e6;      ///< per update: 5 ms at 0.5 ns per number (docs/performance.md)
+    double numbers = 10e6;      ///< per update: 5 ms at 0.5 ns per number (measured/performance.md)
     std::size_t axes = 3;       ///< up to so many axes; more axes add work in proportion
     std::size_t places = 901;   ///< up to so many samples; more samples add work squared
     std::int64_t growth = 200;  ///< part of the limit added per rejected sample: half a percent

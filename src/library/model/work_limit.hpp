@@ -8,7 +8,7 @@
 
 namespace kelpie {
 
-/// The largest work of an update of all axes together (docs/performance.md). Work beyond the limit
+/// The largest work of an update of all axes together (measured/performance.md). Work beyond it
 /// is left to the next updates, as with a Budget. Work is counted, not timed: the same log gives
 /// the same model everywhere. Every sample rejected for lack of work raises the limit by half a
 /// percent, which decays over thousands of updates: with usually larger work, as with a very small

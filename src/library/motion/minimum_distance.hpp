@@ -12,7 +12,7 @@
 
 namespace kelpie {
 
-/// How parameters θ enter an equation M ν̇ = Θ(θ) f: docs/identify.md, "How".
+/// How parameters θ enter an equation M ν̇ = Θ(θ) f: docs/howto/identify.md, "How".
 struct EquationStructure {
   std::function<StructureResidual(const Eigen::MatrixXd& coefficients,
                                   const Eigen::VectorXd& parameters)>

@@ -9,7 +9,7 @@
 namespace kelpie {
 
 /// Chosen on the simulated Dagon of `kelpie-lab diagnose`, seeds 1001 to 1006, unless a line says
-/// otherwise; docs/diagnosis.md measures seeds 1 to 20. A block takes 2.5 s at 4 Hz.
+/// otherwise; docs/howto/diagnosis.md measures seeds 1 to 20. A block takes 2.5 s at 4 Hz.
 inline constexpr struct DiagnosisTuning {
   // Blocks of rows.
   double block_rows = 10.0;       ///< [rows] least size of a block
@@ -65,7 +65,7 @@ inline constexpr struct AuthorityTuning {
 
 /// Chosen by hand, without a recorded measurement, unless a line says otherwise.
 inline constexpr struct IdentificationTuning {
-  // Weak form (docs/identify.md, "How").
+  // Weak form (docs/howto/identify.md, "How").
   double half_window_s = 2.5;   ///< [s] half the width of the modulating function
   double stride_s = 0.5;        ///< [s] between windows
   std::size_t window_rows = 5;  ///< [rows] least number in a window
@@ -81,12 +81,12 @@ inline constexpr struct IdentificationTuning {
   double windows_per_term = 5.0;  ///< [windows] least number per term
   double least_inertia = 1e-4;    ///< of M's 2 × 2 block, over the first guess of the yaw inertia
   /// Share of a value, and [rad] of a direction, for the effect of roll and pitch on equations in
-  /// the plane: chosen on the simulated Dagon (docs/identify.md, "How", 4).
+  /// the plane: chosen on the simulated Dagon (docs/howto/identify.md, "How", 4).
   double plane_allowance = 0.003;
   double angle_allowance_rad = 0.001;
   double most_blur = 0.3;  ///< error of a parameter's effect over the forces of its axis
 
-  // Six axes (docs/identify.md, "Six axes").
+  // Six axes (docs/howto/identify.md, "Six axes").
   std::array<double, 5> half_windows_s{0.5, 0.25, 1.0, 2.0, 4.0};  ///< [s] tried
   double stride_share = 0.4;  ///< [half a window] between windows
   long pieces = 24;           ///< of the log, whose scores count as independent

@@ -11,9 +11,9 @@ inline constexpr struct NavigationTuning {
   /// Choice between hypotheses of the current, and cuts in a log (navigation/dead_reckoning.hpp).
   struct Choice {
     double least_noise = 1e-12;  ///< variance of a measurement, against singular matrices
-    int least_scored = 5;        ///< practised outages before a choice (docs/dead_reckoning.md)
-    double better = 0.7;         ///< of the error of a simpler hypothesis (docs/dead_reckoning.md)
-    double cut = 100.0;          ///< squared deviations of a cut in the log; by hand
+    int least_scored = 5;  ///< practised outages before a choice (docs/method/open_loop.md)
+    double better = 0.7;   ///< of the error of a simpler hypothesis (method/open_loop.md)
+    double cut = 100.0;    ///< squared deviations of a cut in the log; by hand
     double apart_memory = 0.01;  ///< weight of the last sample in the share of cuts; by hand
     double most_apart = 0.05;    ///< share of cuts, beyond which the model is at fault; by hand
   } choice;
@@ -26,7 +26,7 @@ inline constexpr struct NavigationTuning {
     double early = 0.25;         ///< of an outage: age at which it is scored, too; by hand
     double longer = 3.0;         ///< outages, of which one in `every` is so long; by hand
     int every = 4;               ///< outages; by hand
-    std::size_t outages = 24;    ///< that count, as stretches do in rollouts (docs/rollouts.md)
+    std::size_t outages = 24;    ///< that count, as stretches do in rollouts (method/open_loop.md)
     std::size_t least = 3;       ///< outages of an age, before they widen the ellipse; by hand
     double least_factor = 0.01;  ///< of the noise factor; by hand
     double most_factor = 100.0;  ///< of the noise factor; by hand
@@ -47,7 +47,7 @@ inline constexpr struct NavigationTuning {
   /// The Kalman filter (navigation/velocity_filter.hpp).
   struct Filter {
     double least_time_s = 0.5;  ///< s, of an error: two steps of a quarter second
-    double most_time_s = 2.0;   ///< s, of an error; docs/dead_reckoning.md
+    double most_time_s = 2.0;   ///< s, of an error; docs/method/open_loop.md
     double furthest = 9.0;      ///< squared deviations of a measurement: 3 standard deviations
     double most_step = 3.0;     ///< standard deviations that a measurement moves a velocity
     int most_doubts = 3;        ///< measurements beyond, before the filter accepts them; by hand

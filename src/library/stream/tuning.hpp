@@ -6,7 +6,7 @@
 namespace kelpie::stream {
 
 /// Constants of SampleStream, chosen by hand; no measurement recorded. Settings:
-/// docs/from_topics.md.
+/// docs/howto/logs.md.
 inline constexpr struct Tuning {
   /// Messages per source in a row with old stamps, after which a clock was set.
   std::size_t messages_behind = 8;
@@ -17,7 +17,7 @@ inline constexpr struct Tuning {
   /// [s] A sample this close to an edge of a window is inside; stamps have nanoseconds.
   double window_rounding_s = 1e-9;
 
-  // Ranges of settings (docs/limits.md).
+  // Ranges of settings (docs/reference/limits.md).
   double fastest_hz = 1e6;         ///< rows per second
   double longest_gap_s = 1e6;      ///< 12 days
   double longest_wait_s = 1e6;     ///< 12 days

@@ -9,7 +9,7 @@
 namespace kelpie {
 
 /// Work, counted in visited numbers: equal on every machine, 0.2 to 0.5 ns per number on the
-/// machine of docs/performance.md.
+/// machine of docs/measured/performance.md.
 using Work = std::int64_t;
 
 /// The limits of one update: a number of steps, a clock of the caller, shared work, or a

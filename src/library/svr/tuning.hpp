@@ -26,7 +26,7 @@ struct SvrTuning {
   double nearness_shrinks = 0.8;    ///< per path with a full watch list
   double nearness_grows = 1.25;     ///< per path with a watch list less than half full
 
-  /// Work of the solvers; docs/performance.md has the time of a number.
+  /// Work of the solvers; docs/measured/performance.md has the time of a number.
   std::size_t work_aside = 3'000;    ///< loops over all samples, per move
   std::size_t work_slice = 300'000;  ///< slice of a restart
   std::size_t work_smo_step = 6;     ///< per sample

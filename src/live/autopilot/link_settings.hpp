@@ -39,7 +39,7 @@ enum class VelocityMessage : std::uint8_t {
   delta,     ///< VISION_POSITION_DELTA, ArduSub's door for a velocity log
 };
 
-/// The table [live.mavlink] of a configuration file (docs/live.md).
+/// The table [live.mavlink] of a configuration file (docs/howto/live.md).
 struct LinkSettings {
   static constexpr std::uint8_t kOnboardComputer = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
 

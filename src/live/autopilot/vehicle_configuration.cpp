@@ -124,7 +124,7 @@ std::string configuration_text(const std::string& connection, const HeardVehicle
   }
   const std::string frame = log::sub_frame_name(heard.parameters);
   std::string text = fmt::format(
-      "# The vehicle at {0}, by its own parameters{1}{2}; docs/bluerov2.md.\n\n[log]\n"
+      "# The vehicle at {0}, by its own parameters{1}{2}; docs/howto/bluerov2.md.\n\n[log]\n"
       "inputs = [\"u\", \"v\", \"w\", \"p\", \"q\", \"r\", \"phi\", \"theta\"{3}]\n"
       "targets = [\"udot\", \"vdot\", \"wdot\", \"pdot\", \"qdot\", \"rdot\"]\n"
       "rate = 10\nclock = \"header\"\narmed_only = true\nmirror_motors = true\n"

@@ -354,15 +354,15 @@ void add_live(CLI::App& app) {
       app, "live", "Learn from messages as they come, and keep the model across restarts",
       live_command);
   add_file(command, "--config", options->config,
-           "TOML file with [log], [live] and settings (docs/live.md); without it a recording is "
-           "read as `kelpie learn` reads one");
+           "TOML file with [log], [live] and settings (docs/howto/live.md); without it a recording "
+           "is read as `kelpie learn` reads one");
   add_set(command, options->set);
   CLI::Option* const mavlink =
       command
           ->add_option("--mavlink", options->mavlink,
                        "connection of a vehicle with ArduSub, in place of a configuration: "
                        "udp:14550, udpout:HOST:PORT or serial:DEVICE:BAUD; the vehicle's "
-                       "parameters tell thrusters and directions (docs/bluerov2.md)")
+                       "parameters tell thrusters and directions (docs/howto/bluerov2.md)")
           ->excludes("--config");
   CLI::Option* const replay = add_file(command, "--replay", options->log.source.path,
                                        "log to replay, in place of a connection: " + log_formats());
@@ -403,7 +403,7 @@ void add_live(CLI::App& app) {
                       "port of PlotJuggler's UDP server on this machine, or host:port");
   command->add_option("--page", options->page,
                       "port of a page to look at and press buttons on, on this machine, or "
-                      "host:port (docs/live.md), over live.page");
+                      "host:port (docs/howto/live.md), over live.page");
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
   add_examples(command, "live --config examples/bluerov.toml --page 8080",

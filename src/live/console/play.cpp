@@ -66,7 +66,7 @@ void add_play(CLI::App& app) {
   add_file(command, "bag", options->bag.path, "a rosbag2 folder, or one .db3 or .mcap file")
       ->required();
   add_file(command, "--config", options->config,
-           "TOML file whose [live.dds] says on which network (docs/live.md)");
+           "TOML file whose [live.dds] says on which network (docs/howto/live.md)");
   command
       ->add_option("--speed", options->speed,
                    "times as quick as recorded, or max: without a pause, which loses messages")

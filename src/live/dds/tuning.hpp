@@ -8,7 +8,7 @@ namespace kelpie::dds {
 
 /// Behavioural constants of the DDS connection, chosen by hand; no measurement is recorded.
 inline constexpr struct Tuning {
-  std::size_t queued_samples = 1000;           ///< per topic, then the oldest is lost; docs/live.md
+  std::size_t queued_samples = 1000;           ///< per topic; the oldest is lost; howto/live.md
   std::size_t queued_bytes = 4'000'000;        ///< the same; 1,000 Odometry have 720,000
   std::size_t kept_bytes = 16'384;             ///< of memory, by a slot for its next message
   std::uint32_t message_bytes = 1'000'000;     ///< longer messages are neither sent nor received

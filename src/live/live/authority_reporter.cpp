@@ -12,7 +12,7 @@
 namespace kelpie::live {
 namespace {
 
-constexpr double kNews = 0.05;  // of the nominal range; docs/diagnosis.md
+constexpr double kNews = 0.05;  // of the nominal range; docs/howto/diagnosis.md
 
 }  // namespace
 

@@ -15,7 +15,7 @@
 
 namespace kelpie::live {
 
-/// Reports what the thrusters can still do (docs/diagnosis.md#authority): numbers for the health,
+/// Reports what the thrusters can still do (howto/diagnosis.md#authority): numbers for the health,
 /// and an event where authority is lost or comes back. For the learning thread.
 class AuthorityReporter {
  public:

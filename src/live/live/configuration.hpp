@@ -33,7 +33,7 @@ Endpoint parse_endpoint(const std::string& text, const std::string& field);
 /// Treatment of rows with a stuck velocity: constant for longer than `log.gap`.
 enum class Frozen : std::uint8_t { skip, learn };
 
-/// The table [live] of a configuration file (docs/live.md).
+/// The table [live] of a configuration file (docs/howto/live.md).
 struct LiveSettings {
   std::string out = "out/live";  ///< folder of checkpoint and model
   double checkpoint_s = 10.0;    ///< between two checkpoints [s]; a crash loses at most this

@@ -30,9 +30,9 @@ std::shared_ptr<const ReckoningModel> reckoning_model(const DynamicsModel& model
                                                       const Alignment& alignment);
 
 /// Velocities at every message, through outages of the velocity log: a DeadReckoning between the
-/// receiver and the learner (docs/dead_reckoning.md#live). Models come from the learner as of
-/// certain rows and serve a fixed time later, so that a replay gives the numbers of the live run.
-/// For the receiving thread.
+/// receiver and the learner (docs/method/open_loop.md#live). Models come from the learner as
+/// of certain rows and serve a fixed time later, so that a replay gives the numbers of the live
+/// run. For the receiving thread.
 class LiveReckoning {
  public:
   explicit LiveReckoning(const Configuration& configuration);

@@ -15,24 +15,24 @@ inline constexpr struct Tuning {
   double longest_idle_s = 2.0;     ///< without any message, until an error is reported
   std::size_t history = 4096;      ///< samples per signal: 2 s at 2 kHz; windows, gap and lags fit
   std::chrono::seconds between_recordings{5};  ///< [s] between two chunks of a recording; the index
-                                               ///< in memory grows with each; docs/live.md
+                                               ///< in memory grows with each; docs/howto/live.md
 
   // Rows
-  std::size_t queued_rows = 4096;  ///< rows that may wait for the learner; docs/live.md
+  std::size_t queued_rows = 4096;  ///< rows that may wait for the learner; docs/howto/live.md
   std::chrono::milliseconds between_requests{500};  ///< a checkpoint each; equal ones join
-                                                    ///< meanwhile; docs/live.md
+                                                    ///< meanwhile; docs/howto/live.md
   std::chrono::seconds longest_farewell{5};  ///< for the rows that wait at the end; systemd kills
                                              ///< after 90 s, an operator's patience is shorter
   std::chrono::seconds longest_row{60};  ///< [s] for one row, with an alignment search in it, until
-                                         ///< the watchdog sees a hang; docs/live.md
+                                         ///< the watchdog sees a hang; docs/howto/live.md
   double most_kept_rows = 1e6;           ///< of a recording, for the alignment: a day at 10 Hz
 
   // Plausibility
-  double checked_s = 120.0;              ///< of rows in a check: 24 windows of 5 s; docs/live.md
+  double checked_s = 120.0;              ///< of rows in a check: 24 windows of 5 s; howto/live.md
   double checked_rate_hz = 50.0;         ///< rows beyond tell a check no more
   std::size_t least_checked_rows = 121;  ///< at low rates: 24 windows of 5 rows
 
-  // Dead reckoning (docs/dead_reckoning.md#live)
+  // Dead reckoning (docs/method/open_loop.md#live)
   double between_models_s = 10.0;       ///< by the rows' clock
   double between_first_models_s = 2.0;  ///< until there is a model
   double model_delay_s = 2.0;   ///< from a row until the model before that row serves: so live and
@@ -41,7 +41,7 @@ inline constexpr struct Tuning {
   double least_outage_s = 1.0;  ///< s of silence; shorter silences are usual
 
   // Reports
-  double least_pause_s = 0.1;    ///< between two checkpoints or reports of status; docs/limits.md
+  double least_pause_s = 0.1;    ///< between checkpoints or reports of status; reference/limits.md
   double longest_pause_s = 1e6;  ///< 12 days
   std::chrono::seconds between_reports{1};  ///< [s] between two healths
   std::size_t scored_samples = 600;         ///< for R² and coverage: a minute at 10 Hz

@@ -11,7 +11,7 @@
 
 namespace kelpie::ros {
 
-/// The table [live.dds] of a configuration file (docs/live.md): network, names and quality of
+/// The table [live.dds] of a configuration file (docs/howto/live.md): network, names and quality of
 /// service of the node.
 struct NodeSettings {
   dds::Network network;

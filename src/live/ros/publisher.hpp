@@ -28,7 +28,7 @@ struct TopicWriter {
   dds::Publication publication;
 };
 
-/// Publishes predictions, health and events to nodes of ROS 2 (docs/live.md#what-it-publishes).
+/// Publishes predictions, health and events to nodes of ROS 2 (howto/live.md#what-it-publishes).
 /// Never waits: a slow subscriber loses the oldest messages.
 class Publisher final : public live::Output {
  public:

@@ -12,8 +12,8 @@
 
 namespace kelpie::web {
 
-/// The page of a live run, with metrics and buttons (docs/live.md). Results go into a Feed, which a
-/// Server shows; a slow browser delays no result.
+/// The page of a live run, with metrics and buttons (howto/live.md). Results go into a Feed,
+/// which a Server shows; a slow browser delays no result.
 class Page final : public live::Output {
  public:
   /// Listens at `configuration.live.page`, with the configuration's token; away from the loopback

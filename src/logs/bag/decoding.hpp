@@ -20,7 +20,7 @@ struct StampPart {
 };
 
 /// Conversion of messages to numbers: a line of kEncodings in decoding.cpp per encoding.
-/// docs/readers.md explains how to add an encoding.
+/// src/logs/bag/README.md explains how to add an encoding.
 struct Encoding {
   std::string_view name;  ///< as in Topic::encoding
   /// The layout of a topic's messages. Throws InputError (type) without a definition.

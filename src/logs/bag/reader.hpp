@@ -50,7 +50,7 @@ struct RowTimes {
 
 /// Reads the messages of a recording in the order of storage, which is nearly the order of time.
 /// A format derives from this class and implements step(), at_end() and place(); see
-/// docs/readers.md.
+/// src/logs/bag/README.md.
 class MessageReader {
  public:
   /// `source` names the recording in messages.

@@ -5,7 +5,7 @@
 
 namespace kelpie::file {
 
-/// Bounds of what is read, chosen by hand; no measurement recorded. docs/limits.md lists them.
+/// Bounds of what is read, chosen by hand; no measurement recorded. reference/limits.md lists them.
 inline constexpr struct Tuning {
   std::size_t configuration_bytes = std::size_t{4} << 20U;  ///< of TOML, YAML and .msg files
   std::size_t document_bytes = std::size_t{256} << 20U;  ///< of models, checkpoints, memory files

@@ -57,7 +57,7 @@ struct Table {
 /// "the columns are u, v", with the first 200 names, for messages.
 std::string columns_text(const Table& table);
 
-/// Reads a CSV log with a header line, plain or packed by gzip or zstd (docs/csv.md). The separator
+/// Reads a CSV log with a header line, plain or packed by gzip, zstd (howto/logs.md). The separator
 /// (comma, semicolon or tab) is the most frequent in the header, or given by "sep=;"; lines end in
 /// LF, CRLF or CR; blank lines and lines starting with '#' are skipped but counted; names and
 /// numbers may be in double quotes, with separators and doubled quotes inside; a UTF-8 byte order
@@ -69,7 +69,7 @@ std::string columns_text(const Table& table);
 /// unreadable or empty file, a folder, UTF-16 or binary content, a column without name, duplicate
 /// names, a header of numbers only, a row with a wrong number of cells, a broken quotation, no
 /// rows, mixed decimal commas and points, a line, columns or words beyond the bounds of
-/// docs/limits.md, and as file::read_content() and file::unpacked() do. Throws Failure when the
+/// reference/limits.md, as file::read_content() and file::unpacked() do. Throws Failure when the
 /// disk fails while reading.
 Table read_csv(const std::filesystem::path& file);
 

@@ -12,7 +12,7 @@
 namespace kelpie::log {
 
 /// A configuration guessed for a log: velocities and commands are recognised by type, name and unit
-/// (tables in known_roles.cpp), never by learning (docs/templates.md).
+/// (tables in known_roles.cpp), never by learning (docs/howto/logs.md).
 struct Draft {
   std::string toml;                    ///< the file, a reason beside each line
   std::vector<std::string> taken{};    ///< chosen signals, for the user: a line each

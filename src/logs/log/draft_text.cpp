@@ -49,7 +49,7 @@ std::string head_text(const DraftPlan& plan, const std::string& log) {
   std::string text = comment("A draft for " + log + ", guessed from types, names and units.");
   text += comment("Look at the reasons, change what is wrong; then");
   text += comment("  kelpie learn " + log + " --config THIS_FILE");
-  text += comment("docs/from_topics.md explains every key.");
+  text += comment("docs/howto/logs.md explains every key.");
   if (!plan.open.empty()) {
     text += "#\n" + comment("INCOMPLETE. Open points:");
   }

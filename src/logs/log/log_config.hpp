@@ -14,7 +14,7 @@
 namespace kelpie::log {
 
 /// The table [log] of a configuration file: roles of the columns, and the conversion of signals to
-/// samples (docs/from_topics.md).
+/// samples (docs/howto/logs.md).
 struct LogConfig {
   std::string source;  ///< the file, for messages
   Roles roles;

@@ -263,7 +263,7 @@ void add_mistakes_of(const TargetCheck& check, bool is_clock_right, std::vector<
                                  check.target, std::abs(check.late_s),
                                  check.late_s > 0.0 ? "later" : "earlier", check.velocity),
                      "take the acceleration from the velocity by [log.derived] "
-                     "(docs/from_topics.md), or shift the column"});
+                     "(docs/howto/logs.md), or shift the column"});
   }
   if (!shows_ratio(check)) {
     return;

@@ -37,7 +37,7 @@ struct Log {
 bag::RowTimes row_times(const LogConfig& config, const Roles& roles);
 
 /// Reads any recorded data; the only entry. If `config` names states or commands, the log's signals
-/// are sampled at a common rate (docs/from_topics.md). Otherwise a table with all `roles.inputs`,
+/// are sampled at a common rate (docs/howto/logs.md). Otherwise a table with all `roles.inputs`,
 /// or with the usual names (guess_roles), is used directly; a bag, and any other table, is read
 /// with a draft. `roles` are the caller's roles, or else the roles of `config`. Throws InputError:
 /// as reading and sampling do; an incomplete draft, with the open points; a missing or meaningless

@@ -8,7 +8,7 @@ namespace kelpie::log {
 
 /// Behavioural constants of the room. "By hand" means: chosen by hand, no measurement recorded.
 inline constexpr struct Tuning {
-  // Tables (docs/limits.md).
+  // Tables (docs/reference/limits.md).
   std::size_t longest_line = std::size_t{1} << 20U;  ///< bytes; by hand
   std::size_t most_columns = 10'000;                 ///< by hand
   std::size_t most_words = 4'000'000;                ///< 40 bytes each in memory; by hand
@@ -46,7 +46,7 @@ inline constexpr struct Tuning {
     double fastest_hz = 200.0;  ///< of rows, without a word; by hand
   } plausibility;
 
-  // Drafts (docs/templates.md).
+  // Drafts (docs/howto/logs.md).
   double usual_rate_hz = 10.0;     ///< of rows; by hand
   double fastest_rate_hz = 50.0;   ///< of rows of a short log; by hand
   double wanted_rows = 1000.0;     ///< of a short log; by hand

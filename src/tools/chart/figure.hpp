@@ -39,7 +39,7 @@ struct PlotAxis {
 };
 
 /// An interactive figure, drawn by figure.js from a description and columns of numbers
-/// (docs/charts.md). Series differ in colour, dash pattern and marker, chosen by `style` ≥ 0.
+/// (src/tools/chart/README.md). Series differ in colour, dash pattern and marker, chosen by `style` ≥ 0.
 /// Without JavaScript a sentence with the range of each series replaces the figure; a figure
 /// without data says "no data".
 class Figure {

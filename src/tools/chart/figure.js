@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws figures with uPlot. A figure is a description (docs/charts.md) and columns of numbers; where
+// Draws figures with uPlot. A figure is a description (src/tools/chart/README.md) and columns of numbers; where
 // these come from is the caller's affair: `Figure` takes both, the end of this file finds them in a
 // page. Text of a log is only ever set as text.
 "use strict";

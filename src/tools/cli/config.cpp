@@ -64,7 +64,7 @@ void add_config(CLI::App& app) {
   command->add_option("--axes", options->axes, "number of targets")->check(CLI::Range(1, 64));
   command->add_flag("--all", options->all,
                     "all settings, by groups, instead of the essential ones");
-  command->add_flag("--markdown", options->markdown, "the tables of docs/settings.md instead");
+  command->add_flag("--markdown", options->markdown, "tables of docs/reference/settings.md");
   add_examples(command, "config > settings.toml", "config --all --preset paper --axes 3");
 }
 

@@ -310,7 +310,7 @@ void run_identify(const IdentifyArguments& given) {
   answer.next = {result.found.scale == study::ScaleSource::none
                      ? fmt::format("kelpie identify {} --mass KG   (masses and forces, not ratios)",
                                    options.text(options.config))
-                     : "kelpie simulate SCENARIO.toml   (docs/vehicle.md: drive the vehicle)"};
+                     : "kelpie simulate SCENARIO.toml   (docs/reference/simulator.md)"};
   give(answer, options.answer);
 }
 
@@ -344,8 +344,9 @@ void add_identify(CLI::App& app) {
       ->excludes(thrust);
   add_file(
       command, "--vehicle", options->vehicle,
-      "vehicle file (docs/vehicle.md): with the places of the log's thrusters all six axes are "
-      "identified, else it tells what the plane doesn't show; its mass, and without --thrust "
+      "vehicle file (docs/reference/simulator.md): with the places of the log's thrusters all six "
+      "axes are identified, else it tells what the plane doesn't show; its mass, and without "
+      "--thrust "
       "its added mass in surge, give the scale");
   command->add_option("--volts", options->volts,
                       "column with the supply of the thrusters in V, for six axes");

@@ -54,7 +54,7 @@ struct Outcome {
   std::size_t held_out_rows = 0;
   double duration_s = 0.0;  ///< of the log
   std::size_t memory_bytes = 0;
-  std::vector<std::string> findings;  ///< changes of the vehicle, in words (docs/diagnosis.md)
+  std::vector<std::string> findings;  ///< changes of the vehicle, in words (howto/diagnosis.md)
   std::vector<AxisOutcome> axes;
   Times times;
 };
@@ -63,7 +63,7 @@ struct Outcome {
 /// at 0.
 Outcome outcome_of(const study::StreamResult& stream, double duration_s);
 
-file::Json outcome_json(const Outcome& outcome);  ///< About 1 kB; docs/study.md.
+file::Json outcome_json(const Outcome& outcome);  ///< About 1 kB; docs/howto/studies.md.
 /// Throws InputError on JSON of another form than outcome_json()'s.
 Outcome read_outcome(const file::JsonNode& node);
 

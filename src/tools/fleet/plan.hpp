@@ -38,7 +38,7 @@ struct Source {
   std::string identity;  ///< how logs are read and learned, in canonical form
 };
 
-/// Content of a study's file (docs/study.md).
+/// Content of a study's file (docs/howto/studies.md).
 struct Plan {
   std::filesystem::path file;
   std::string name;

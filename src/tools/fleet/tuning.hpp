@@ -6,7 +6,7 @@
 
 namespace kelpie::fleet {
 
-/// Behavioural constants of a study; docs/study.md describes them. Chosen by hand except where
+/// Behavioural constants of a study; howto/studies.md describes them. Chosen by hand except where
 /// named; no constant changes a learned number.
 inline constexpr struct Tuning {
   /// Samples: the time of a run is taken to be proportional to this number + `buffer`. Measured

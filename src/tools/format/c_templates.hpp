@@ -165,7 +165,7 @@ void $NAME_assess(const $REAL x[$INPUTS], $REAL y[$TARGETS], $REAL half_width[$T
 )";
 
 /// The model as a function of one input x and one output y, by the convention of generated C that
-/// CasADi's external() and acados call (docs/controller.md), with its Jacobian. Dense vectors have
+/// CasADi's external() and acados call (howto/controller.md), with its Jacobian. Dense vectors have
 /// the sparsity {rows, 1, 1}; the output that a Jacobian is given but doesn't need has no entries.
 inline constexpr std::string_view kCasadi = R"(
 /* For CasADi: external("$NAME", "./model.so"). acados wants -Dcasadi_int=int. */

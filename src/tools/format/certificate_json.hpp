@@ -7,7 +7,7 @@
 
 namespace kelpie::format {
 
-/// certificate.json: docs/identify.md, "Certificate". `source`: the log.
+/// certificate.json: docs/howto/identify.md, "Certificate". `source`: the log.
 std::string certificate_json(const study::CertificateList& list, const std::string& source);
 
 }  // namespace kelpie::format

@@ -9,7 +9,7 @@
 namespace kelpie::format {
 
 /// The content of a checkpoint: a header in JSON for people and for comparison of runs, and a state
-/// for the owner alone. File layout: docs/checkpoints.md.
+/// for the owner alone. File layout: docs/reference/files.md.
 struct Checkpoint {
   std::string header;
   std::string state;

@@ -8,7 +8,7 @@
 
 namespace kelpie::format {
 
-/// A comparison as JSON (docs/compare.md), with the recommendation in words; NaN becomes null.
+/// A comparison as JSON (howto/studies.md), with the recommendation in words; NaN becomes null.
 /// Requires a finished comparison with kelpie as the first contest.
 std::string comparison_json(const study::Comparison& comparison,
                             const std::vector<std::string>& recommendation);

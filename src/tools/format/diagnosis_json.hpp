@@ -6,7 +6,7 @@
 
 namespace kelpie::format {
 
-/// The object `diagnosis` of result.json (docs/result.md).
+/// The object `diagnosis` of result.json (docs/reference/files.md).
 file::Json diagnosis_object(const study::StreamResult& result);
 
 }  // namespace kelpie::format

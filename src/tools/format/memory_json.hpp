@@ -21,7 +21,7 @@ struct AxisMemory {
   std::string name_of(const StoredPastModel& model) const;  ///< "target:number"
 };
 
-/// The past models of one vehicle, as stored on disk (docs/memory.md).
+/// The past models of one vehicle, as stored on disk (docs/method/learner.md).
 struct PastModelsFile {
   std::vector<std::string> inputs;
   std::map<std::string, std::string> units;  ///< of inputs and targets, where known

@@ -20,7 +20,7 @@ struct CodeOptions {
   std::map<std::string, Unit> units;  ///< of columns, by name; missing columns have no unit
 };
 
-/// A trained model as one file of C99 (docs/controller.md): constant tables and the evaluator
+/// A trained model as one file of C99 (docs/howto/controller.md): constant tables and the evaluator
 /// model_eval.inc. The file needs exp() alone, and sqrt, sin, cos or pow for formulas with these
 /// functions. No allocation and no global state; safe from many threads. Predictions equal
 /// TrainedModel::predict_with_jacobian, in double to about 1e-13 of the scale of a target, with NaN

@@ -21,7 +21,7 @@ struct ModelInfo {
   std::vector<LearnedLog> learned{};  ///< empty: not known
 };
 
-/// A trained model as JSON text (docs/model.md) with what is known of units, doubt and learned
+/// A trained model as JSON text (reference/files.md) with what is known of units, doubt and learned
 /// logs. Numbers have the shortest form that reads back to the same value. Ends in a newline.
 std::string model_json(const TrainedModel& model, const ModelInfo& info = {});
 

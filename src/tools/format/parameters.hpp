@@ -9,7 +9,7 @@
 
 namespace kelpie::format {
 
-// Contents of the files that `kelpie identify` writes: docs/identify.md.
+// Contents of the files that `kelpie identify` writes: docs/howto/identify.md.
 
 /// "given", "identified", "at its bound" or "not told by the log".
 const char* state_word(ParameterState state);
@@ -36,7 +36,7 @@ std::string parameters_yaml(const study::Identification& found, Frame frame);
 /// newline.
 std::string parameters_json(const study::Identification& found, Frame frame);
 
-/// A vehicle file (docs/vehicle.md). Requires `has_slots`.
+/// A vehicle file (docs/reference/simulator.md). Requires `has_slots`.
 std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& source);
 
 /// A model of Gazebo (gz-sim 8 and later): inertial with fluid_added_mass, plugins Hydrodynamics

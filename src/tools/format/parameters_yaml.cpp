@@ -170,7 +170,7 @@ std::string parameter_unit(const study::Identification& found, std::size_t place
 
 std::string parameters_yaml(const study::Identification& found, Frame frame) {
   std::string text = fmt::format(
-      "# Parameters of Fossen's equation {}, by `kelpie identify`: docs/identify.md\n"
+      "# Parameters of Fossen's equation {}, by `kelpie identify`: docs/howto/identify.md\n"
       "format: {}\nversion: {}\nlog: {}\nframe: {}\ntraining_rows: {}\nsplit: {}\n"
       "scale: {}\nmisfit: {}\n",
       found.six ? "on six axes" : "in the plane", kParametersFormat, kParametersVersion,

@@ -8,7 +8,7 @@
 
 namespace kelpie::format {
 
-/// The result as JSON (UTF-8, two-space indent, a newline at the end). docs/result.md lists
+/// The result as JSON (UTF-8, two-space indent, a newline at the end). reference/files.md lists
 /// every key, its unit and its nulls. NaN and infinities are written as null.
 std::string result_json(const study::StreamResult& result);
 

@@ -9,7 +9,7 @@
 
 namespace kelpie::format {
 
-/// The scores of rollouts as JSON (docs/rollouts.md); NaN becomes null.
+/// The scores of rollouts as JSON (docs/method/open_loop.md); NaN becomes null.
 std::string rollout_json(const study::OpenLoopResult& result);
 
 /// One rollout as columns: t_s, then X, X_spread (and X_measured, where measured) for every state

@@ -6,7 +6,7 @@
 
 namespace kelpie::format {
 
-/// The steady part of an axis in model.json (docs/rollouts.md); null where unknown.
+/// The steady part of an axis in model.json (docs/method/open_loop.md); null where unknown.
 file::Json steady_json(const SteadyModel& steady);
 
 }  // namespace kelpie::format

@@ -8,7 +8,7 @@
 namespace kelpie::format {
 
 /// A search as JSON: header, chosen values, scores by target and log, every evaluation
-/// (docs/tuning.md). The same search gives the same bytes; NaN becomes null.
+/// (docs/howto/studies.md). The same search gives the same bytes; NaN becomes null.
 std::string tune_json(const study::TuneResult& result, const study::TuneJournal::Header& header);
 
 }  // namespace kelpie::format

@@ -26,7 +26,7 @@ chart::TextTable change_table(const study::StreamResult& result) {
       .rows = {},
       .notes = {"Found: how much later. Explained: share of what a refit without restriction "
                 "explains. Margin: log likelihood by which it is better than the next best cause; "
-                "intervals are of 90 % (docs/diagnosis.md)."},
+                "intervals are of 90 % (docs/howto/diagnosis.md)."},
       .left = {2}};
   const std::vector<std::string> targets = study::target_names(result);
   for (const Finding& finding : result.diagnosis.findings) {
@@ -46,7 +46,7 @@ chart::TextTable health_table(const study::StreamResult& result) {
       .title = "Thrusters in the last minute",
       .head = {"thruster", "gives", "at least", "at most", "changed"},
       .rows = {},
-      .notes = {"Of its thrust at the start, with an interval of 90 % (docs/diagnosis.md)."},
+      .notes = {"Of its thrust at the start, with an interval of 90 % (docs/howto/diagnosis.md)."},
       .left = {0, 4}};
   for (const Cause& health : result.diagnosis.health) {
     const auto& [cause, times] = study::since_the_start(health, result.diagnosis.findings);

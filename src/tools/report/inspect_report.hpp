@@ -20,7 +20,7 @@ std::string draft_table(const log::Draft& draft, const std::optional<study::Firs
 /// What cannot be right in a log, a line each with the remedy.
 std::string mistakes_text(const std::vector<log::Mistake>& mistakes);
 
-/// All as JSON (docs/bags.md).
+/// All as JSON (docs/reference/formats.md).
 std::string inspect_json(const bag::BagReport& report, const log::Draft& draft,
                          const std::optional<study::FirstLook>& look,
                          const std::vector<log::Mistake>& mistakes, const std::string& source);

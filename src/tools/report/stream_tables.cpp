@@ -17,11 +17,11 @@ namespace kelpie::report {
 namespace {
 
 constexpr std::string_view kDisturbanceNote =
-    "With disturbance: kelpie's prediction and what it missed of late (docs/disturbance.md). ";
+    "With disturbance: kelpie's prediction and the recent error (docs/method/uncertainty.md). ";
 constexpr std::string_view kMemberNote =
     "By how well each foretold what lay ahead, lately. Learner: the paper's, with the settings. "
     "Precise and memory: least squares on all samples, with a kernel, for little and for much "
-    "noise. Line: the same without one. Mean: of the targets (docs/committee.md).";
+    "noise. Line: the same without one. Mean: of the targets (docs/method/committee.md).";
 constexpr std::string_view kCoverageNote =
     "Held: share of the samples inside the interval that was in force before they were learned. "
     "Lowest: in any 500 samples in a row of one configuration, from its 501st on. Widths are in "

@@ -113,7 +113,7 @@ chart::TextTable scores_table(const study::TuneResult& result) {
   table.notes = {
       fmt::format("{} evaluations; given up, since the solver needed too many iterations: {}",
                   result.evaluations.size(), given_up),
-      "Least squares and mean are baselines on the same rows (docs/baselines.md)."};
+      "Least squares and mean are baselines on the same rows (docs/measured/reproduction.md)."};
   return table;
 }
 

@@ -92,7 +92,7 @@ Identification identify(const log::Dataset& data, const Split& split, const Plan
 Identification identification_of(const log::Dataset& data, const Split& split,
                                  std::size_t training_rows);
 
-/// Gives forces their unit, as far as known (docs/identify.md, "The scale").
+/// Gives forces their unit, as far as known (docs/howto/identify.md, "The scale").
 void give_scale(const KnownThrust& known, Identification& found);
 
 /// Calls `estimate`, and names the log where its rows don't suffice.

@@ -14,7 +14,7 @@ namespace kelpie::study {
 
 // The tables of a StreamResult: a line for each number. The saved state of a stream
 // (study/stream.cpp) and result.json (format/result_json.cpp) follow from them, both in the
-// order of the lines. docs/result.md explains every key.
+// order of the lines. docs/reference/files.md explains every key.
 
 /// Version of the saved state of a stream; goes up with every change of a saved number.
 inline constexpr const char* kStreamVersion = "1";

@@ -11,7 +11,7 @@ namespace kelpie::study {
 inline constexpr struct Tuning {
   struct Stream {
     std::size_t looks = 200;     ///< validation points by default; the resolution of figures
-    std::size_t settled = 1000;  ///< samples before r2_min_after_1000 counts; docs/result.md
+    std::size_t settled = 1000;  ///< samples before r2_min_after_1000 counts; reference/files.md
   } stream;
 
   struct Baselines {
@@ -24,16 +24,16 @@ inline constexpr struct Tuning {
   } intervals;
 
   struct Split {
-    std::size_t pieces = 25;  ///< five held-out pieces of a short log; docs/result.md
+    std::size_t pieces = 25;  ///< five held-out pieces of a short log; docs/reference/files.md
   } split;
 
-  /// docs/compare.md; by hand.
+  /// docs/howto/studies.md; by hand.
   struct Comparison {
     double clear_gain = 0.01;  ///< of R², mean over the axes, that a recommendation takes
     std::size_t least_inner_rows = 300;  ///< training rows for inner splits
   } comparison;
 
-  /// docs/tuning.md describes the rungs.
+  /// docs/howto/studies.md describes the rungs.
   struct ForwardChain {
     std::size_t stretches = 5;                ///< scores per window
     std::size_t windows = 3;                  ///< early, middle, late
@@ -43,13 +43,13 @@ inline constexpr struct Tuning {
     std::size_t rows_between_watches = 32;  ///< progress alone; no result depends on the value
   } chain;
 
-  /// A target has to be the slope of its velocity; docs/identify.md.
+  /// A target has to be the slope of its velocity; docs/howto/identify.md.
   struct Identification {
     double least_correlation = 0.5;
     double least_slope = 0.5;
     double most_slope = 2.0;
-    double added_share = 0.2;   ///< surge added mass / mass, where unknown; docs/identify.md
-    double added_error = 0.15;  ///< standard error of added_share; docs/identify.md
+    double added_share = 0.2;   ///< surge added mass / mass, where unknown; docs/howto/identify.md
+    double added_error = 0.15;  ///< standard error of added_share; docs/howto/identify.md
   } identification;
 
   struct OpenLoop {

@@ -10,7 +10,7 @@
 namespace kelpie::vehicle {
 namespace {
 
-// Sources, read in November 2026; docs/identify.md, "Certificate", has the addresses.
+// Sources, read in November 2026; docs/howto/identify.md, "Certificate", has the addresses.
 // Gazebo: gz-physics, AddedMassFeatures.cc (<fluid_added_mass> in DART's spatial inertia) and
 // SimulationFeatures.cc (weight of the dry mass as a force); DART, World::step:
 // integrateVelocities, then integratePositions. The plugin: gz-sim, Hydrodynamics.cc (stateDot),

@@ -28,7 +28,7 @@ enum class StepForm : std::uint8_t {
 };
 
 /// The equations of a simulator, as documentation and sources of that simulator have them
-/// (docs/identify.md, "Certificate").
+/// (docs/howto/identify.md, "Certificate").
 struct Engine {
   std::string_view name;   ///< of the option --for
   std::string_view title;  ///< for people

@@ -9,7 +9,7 @@
 
 namespace kelpie::vehicle {
 
-// Keys, units and defaults: docs/vehicle.md. Both throw InputError with file, line and key on a
+// Keys, units and defaults: reference/simulator.md. Both throw InputError (file, line, key) on a
 // file that is missing or no TOML, a key that is unknown or missing, a value of the wrong type or
 // shape, a number that is not finite, and whatever validate() rejects.
 

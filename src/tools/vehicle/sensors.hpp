@@ -23,7 +23,7 @@ struct SensorNoise {
   double attitude_white_rad = 0.0;
 };
 
-/// "none", "as_recorded", "raw_dvl" or "stress"; figures in docs/vehicle.md. Throws InputError.
+/// "none", "as_recorded", "raw_dvl" or "stress"; see reference/simulator.md. Throws InputError.
 SensorNoise noise_preset(const std::string& name);
 
 /// Measured velocities: surge, sway [m/s], yaw rate [rad/s].

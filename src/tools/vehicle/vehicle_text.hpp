@@ -7,8 +7,8 @@
 
 namespace kelpie::vehicle {
 
-/// A vehicle file without head, as read_vehicle() reads (docs/vehicle.md): numbers with six digits,
-/// directions exact. Requires a vehicle that passes validate().
+/// A vehicle file without head, for read_vehicle() (reference/simulator.md): numbers with six
+/// digits, directions exact. Requires a vehicle that passes validate().
 std::string vehicle_text(const VehicleParameters& vehicle);
 
 }  // namespace kelpie::vehicle

@@ -61,7 +61,7 @@ RecursiveLeastSquaresSettings with(double lambda, double huber = 0.0, double pri
   return {.velocities = 3, .lambda = lambda, .huber = huber, .prior = prior};
 }
 
-// In this order the terms stand in docs/baselines.md.
+// In this order the terms stand in docs/measured/reproduction.md.
 TEST(RecursiveLeastSquares, TakesPlanarMotionsTermsInTheirOrder) {
   const RecursiveLeastSquares learner(input_names(5), {});
   const RecursiveLeastSquares::Terms values = learner.terms(std::vector{2.0, -3.0, 0.5, 4.0, -5.0});

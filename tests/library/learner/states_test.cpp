@@ -23,7 +23,7 @@ using Comparison = LearnerState::Comparison;
 using Task = AdaptiveSvr::SliceTask;
 using Past = PastModels::State;
 
-/// A row of the table of modes in docs/states.md.
+/// A row of the table of modes in docs/reference/architecture.md.
 struct Mode {
   std::string name;
   Comparison comparison;

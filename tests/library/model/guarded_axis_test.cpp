@@ -91,7 +91,7 @@ TEST_P(Garbage, AMinuteLaterTheModelIsAsGoodAsWithout) {
   learn(without, truth, 0, burst.from);
   learn(without, truth, burst.from + burst.samples, end);
   // A minute after the start the model still learns fast, and a second of samples counts: 0.01 is
-  // not reached there (docs/committee.md).
+  // not reached there (docs/method/committee.md).
   const double allowed = burst.from == 0 ? 0.05 : 0.01;
   EXPECT_GT(worst_r2(with, truth, end, end + 500),
             worst_r2(without, truth, end, end + 500) - allowed);

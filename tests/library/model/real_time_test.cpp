@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What docs/api.md promises of a model in real time, at the door that users take.
+// What include/README.md promises of a model in real time, at the door that users take.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -45,7 +45,7 @@ TEST(ModelSettings, ValuesReadBackToTheSameSettings) {
   }
 }
 
-// What docs/limits.md promises to small computers, for a vehicle with three velocities and three
+// reference/limits.md promises to small computers, for a vehicle with three velocities and three
 // thrusters.
 TEST(ModelSettings, PresetsKeepToTheirMemory) {
   const std::vector<std::string> inputs{"u", "v", "r", "th1", "th2", "th3"};

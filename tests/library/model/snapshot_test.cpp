@@ -30,7 +30,7 @@ using testing::random_model;
 using Slopes = Eigen::AutoDiffScalar<Eigen::Vector3d>;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// What one member says, by the formulas of docs/model.md.
+// What one member says, by the formulas of docs/reference/files.md.
 Slopes by_formula(const SvrFunction& function, const std::array<Slopes, 3>& z,
                   const std::array<Slopes, 3>& raw, const std::vector<double>& term_scale) {
   const KernelWeights& weights = function.kernel().weights();
@@ -54,7 +54,8 @@ Slopes by_formula(const SvrFunction& function, const std::array<Slopes, 3>& z,
   return sum;
 }
 
-// Value and gradient of an axis by the formulas of docs/model.md, from what the model publishes.
+// Value and gradient of an axis by the formula of reference/files.md, from what the model
+// publishes.
 Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::vector<double>& x) {
   std::array<Slopes, 3> raw;
   for (int i = 0; i < 3; ++i) {

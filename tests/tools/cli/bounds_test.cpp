@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is read has bounds (docs/limits.md), and mistakes show before any work: files that never end
+// Input has bounds (reference/limits.md), and mistakes show before any work: files that never end
 // or never begin, lines and tables beyond any log, numbers beyond any vehicle.
 #include <gtest/gtest.h>
 #include <sys/stat.h>

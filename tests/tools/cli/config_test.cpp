@@ -58,9 +58,9 @@ TEST_F(Config, AnOlderFileIsToldWhatToWriteInstead) {
 
 TEST_F(Config, TheDocumentedTableIsTheProgramsOwn) {
   const std::string table = run("config --markdown").out;
-  const std::string docs = content_of(KELPIE_SOURCE_DIR "/docs/settings.md");
+  const std::string docs = content_of(KELPIE_SOURCE_DIR "/docs/reference/settings.md");
   EXPECT_NE(docs.find(table), std::string::npos)
-      << "docs/settings.md needs the output of `kelpie config --markdown`:\n"
+      << "docs/reference/settings.md needs the output of `kelpie config --markdown`:\n"
       << table;
 }
 

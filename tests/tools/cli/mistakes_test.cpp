@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Typical mistakes of a first hour: docs/mistakes.md has the same messages.
+// Typical mistakes of a first hour: docs/howto/first_hour.md has the same messages.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -105,10 +105,10 @@ class Mistakes : public testing::CommandTest {
     EXPECT_NE((outcome.err + outcome.out).find(message), std::string::npos)
         << message << "\n"
         << outcome.err << outcome.out;
-    EXPECT_NE(page_.find(message), std::string::npos) << "docs/mistakes.md lacks: " << message;
+    EXPECT_NE(page_.find(message), std::string::npos) << "the page lacks: " << message;
   }
 
-  const std::string page_ = testing::content_of(KELPIE_SOURCE_DIR "/docs/mistakes.md");
+  const std::string page_ = testing::content_of(KELPIE_SOURCE_DIR "/docs/howto/first_hour.md");
 };
 
 TEST_F(Mistakes, Units) {

@@ -34,7 +34,7 @@ void collect_keys(const Json& json, std::set<std::string>& keys) {
 }
 
 TEST(ResultJson, EveryKeyIsDocumented) {
-  const std::ifstream file(std::string(KELPIE_SOURCE_DIR) + "/docs/result.md");
+  const std::ifstream file(std::string(KELPIE_SOURCE_DIR) + "/docs/reference/files.md");
   std::stringstream text;
   text << file.rdbuf();
   std::set<std::string> keys;

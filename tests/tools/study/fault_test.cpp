@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outlier node judged on faults put into the targets of training rows: the rows it is judged on
 // are clean. The learner alone. Prints what it measures. Of the real log it takes the first 5,000
-// rows; KELPIE_WHOLE_LOG=1 takes all of them, for the tables of docs/accuracy.md.
+// rows; KELPIE_WHOLE_LOG=1 takes all of them, for the tables of docs/measured/accuracy.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The simulated vehicle that changes and returns (scenarios/returns.toml, A→B→A→C→B): how good the
-// model is some samples after a hidden switch. Prints the table of docs/memory.md.
+// model is some samples after a hidden switch. Prints the table of docs/method/learner.md.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 

@@ -65,7 +65,7 @@ TEST(SixAxes, TheEquationIsThatOfTheSimulator) {
   }
 }
 
-// Simulation, one seed; docs/identify.md has twenty.
+// Simulation, one seed; docs/howto/identify.md has twenty.
 TEST(SixAxes, TenMinutesOfASimulatedVehicleTellItsParameters) {
   const vehicle::Scenario scenario = heavy(600.0, 11);
   const SixAxisFit fit = scaled_by_inertia(fit_six_axes(rows_of(scenario)),
