@@ -34,6 +34,11 @@ std::uint64_t load(std::uint64_t& word) {
   return std::atomic_ref(word).load(std::memory_order_acquire);
 }
 
+// In whole groups of lanes.
+std::size_t grouped(std::size_t vectors) {
+  return (vectors + BlockLayout::kLanes - 1) / BlockLayout::kLanes * BlockLayout::kLanes;
+}
+
 /// Writes numbers one behind the other.
 class NumberWriter {
  public:
@@ -51,29 +56,66 @@ class NumberWriter {
   std::size_t next_ = 0;
 };
 
-// The box around the known samples of all targets: beyond it the model has seen nothing.
-void put_bounds(std::span<const Snapshot> snapshots, NumberWriter& out) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const std::size_t inputs = snapshots.front().scaling.input.dimension();
-  ScaledInput low(inputs);
-  ScaledInput high(inputs);
-  std::ranges::fill(low, kInfinity);
-  std::ranges::fill(high, -kInfinity);
-  ScaledInput z(inputs);
-  for (const Snapshot& axis : snapshots) {
-    for (std::size_t i = 0; axis.known && i < axis.known->samples.size(); ++i) {
-      axis.known->samples.get(i, z);
-      const ScaledInput x = axis.scaling.input.invert(as_span(z));
-      for (std::size_t k = 0; k < inputs; ++k) {
-        low[k] = std::min(low[k], x[k]);
-        high[k] = std::max(high[k], x[k]);
+bool is_diagonal(const Matrix& whitening) {
+  for (std::size_t row = 0; row < whitening.rows(); ++row) {
+    for (std::size_t column = 0; column < row; ++column) {
+      if (whitening(row, column) != 0.0) {
+        return false;
       }
     }
   }
-  for (std::size_t k = 0; k < inputs; ++k) {
-    const bool known = low[k] <= high[k];
-    out.put(known ? low[k] : -kInfinity);
-    out.put(known ? high[k] : kInfinity);
+  return true;
+}
+
+/// A box around points.
+struct Box {
+  explicit Box(std::size_t inputs) : low(inputs), high(inputs) {
+    std::ranges::fill(low, std::numeric_limits<double>::infinity());
+    std::ranges::fill(high, -std::numeric_limits<double>::infinity());
+  }
+  void take(const ScaledInput& x) {
+    for (std::size_t k = 0; k < low.size(); ++k) {
+      low[k] = std::min(low[k], x[k]);
+      high[k] = std::max(high[k], x[k]);
+    }
+  }
+
+  ScaledInput low;
+  ScaledInput high;
+};
+
+// Of scaled samples. Inputs that are scaled one by one keep their order: the corners suffice.
+void take_samples(const InputScaling& scaling, const SampleStore& samples, Box& box) {
+  ScaledInput z(samples.dimension());
+  if (samples.size() > 0 && is_diagonal(scaling.whitening)) {
+    ScaledInput most(samples.dimension());
+    for (std::size_t k = 0; k < samples.dimension(); ++k) {
+      const auto [least, greatest] = std::ranges::minmax(samples.coordinate(k));
+      z[k] = least;
+      most[k] = greatest;
+    }
+    box.take(scaling.invert(as_span(z)));
+    box.take(scaling.invert(as_span(most)));
+    return;
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.get(i, z);
+    box.take(scaling.invert(as_span(z)));
+  }
+}
+
+// The box around the known samples of all targets: beyond it the model has seen nothing.
+void put_bounds(std::span<const Snapshot> snapshots, NumberWriter& out) {
+  Box box(snapshots.front().scaling.input.dimension());
+  for (const Snapshot& axis : snapshots) {
+    if (axis.known) {
+      take_samples(axis.scaling.input, axis.known->samples, box);
+    }
+  }
+  for (std::size_t k = 0; k < box.low.size(); ++k) {
+    const bool known = box.low[k] <= box.high[k];
+    out.put(known ? box.low[k] : -std::numeric_limits<double>::infinity());
+    out.put(known ? box.high[k] : std::numeric_limits<double>::infinity());
   }
 }
 
@@ -100,7 +142,9 @@ void put_targets(std::span<const Snapshot> snapshots, NumberWriter& out) {
     out.put(target.invert(axis.function.limits.high));
     out.put(std::span<const double>(input.mean));
     for (std::size_t row = 0; row < input.whitening.rows(); ++row) {
-      out.put(std::span<const double>(input.whitening.row(row)));
+      for (std::size_t column = 0; column < input.whitening.columns(); ++column) {
+        out.put(input.whitening(row, column));
+      }
     }
   }
 }
@@ -113,7 +157,7 @@ void put_members(std::span<const Snapshot> snapshots, NumberWriter& out) {
       const SvrFunction& function = member.function;
       out.put(member.share);
       out.put(first);
-      first += function.beta().size();
+      first += grouped(function.beta().size());
       out.put(first);
       out.put(function.kernel().local().gamma());
       out.put(function.kernel().weights().s);
@@ -134,16 +178,30 @@ void put_samples(const SampleStore& samples, NumberWriter& out) {
   }
 }
 
+// Vectors and weights of a filled-up group are 0.
+void put_group(std::span<const double> numbers, std::size_t first, double factor,
+               NumberWriter& out) {
+  for (std::size_t i = first; i < first + BlockLayout::kLanes; ++i) {
+    out.put(i < numbers.size() ? factor * numbers[i] : 0.0);
+  }
+}
+
 void put_vectors(std::span<const Snapshot> snapshots, NumberWriter& out) {
   for (const Snapshot& axis : snapshots) {
     for (const FunctionMix::Member& member : axis.function.members) {
-      put_samples(member.function.support_vectors(), out);
+      const SampleStore& vectors = member.function.support_vectors();
+      for (std::size_t first = 0; first < vectors.size(); first += BlockLayout::kLanes) {
+        for (std::size_t k = 0; k < vectors.dimension(); ++k) {
+          put_group(vectors.coordinate(k), first, 1.0, out);
+        }
+      }
     }
   }
   for (const Snapshot& axis : snapshots) {
     for (const FunctionMix::Member& member : axis.function.members) {
-      for (const double beta : member.function.beta()) {
-        out.put(axis.scaling.target.scale * beta);
+      const std::span<const double> beta = member.function.beta();
+      for (std::size_t first = 0; first < beta.size(); first += BlockLayout::kLanes) {
+        put_group(beta, first, axis.scaling.target.scale, out);
       }
     }
   }
@@ -187,7 +245,7 @@ Counts counts_of(std::span<const Snapshot> snapshots) {
     counts.members += axis.function.members.size();
     counts.places += known_samples(axis);
     for (const FunctionMix::Member& member : axis.function.members) {
-      counts.vectors += member.function.beta().size();
+      counts.vectors += grouped(member.function.beta().size());
     }
   }
   return counts;
@@ -218,7 +276,7 @@ BlockLayout BlockLayout::of(std::span<const std::string> input_names,
   for (const Snapshot& axis : capacity) {
     layout.members += axis.function.members.size();
     for (const FunctionMix::Member& member : axis.function.members) {
-      layout.vectors += member.function.support_vectors().capacity();
+      layout.vectors += grouped(member.function.support_vectors().capacity());
     }
     layout.places += assess && axis.known ? axis.known->samples.capacity() : 0;
   }

@@ -30,7 +30,9 @@ namespace kelpie {
 ///     once         shift of the commands [s]; members, support vectors, places
 ///     per target   first and last member, limits, mean of the inputs, whitening (row-major)
 ///     per member   share, first and last support vector, γ, s, fine, offset, coefficients
-///     vectors      all support vectors, scaled; all weights, in target units
+///     vectors      all support vectors, scaled; all weights, in target units; in groups of
+///                  kLanes of one member, of which first comes the first input of all, and so on;
+///                  the last group of a member is filled up with weights 0
 ///     per target   first and last place, half width, 1 / (2 bandwidth²); 0: not known
 ///     places       all places, scaled; all densities
 ///
@@ -39,13 +41,14 @@ namespace kelpie {
 struct BlockLayout {
   static constexpr std::uint64_t kMark = 0x3130'6b6c'656b'6c62;  // "blkelk01"
   static constexpr std::size_t kHeaderWords = 16;
+  static constexpr std::size_t kLanes = 4;  ///< support vectors that are evaluated together
 
   std::uint64_t identity = 0;
   std::size_t inputs = 0;
   std::size_t targets = 0;
   std::size_t terms = 0;
   std::size_t members = 0;  ///< of all targets
-  std::size_t vectors = 0;  ///< of all members
+  std::size_t vectors = 0;  ///< of all members, in whole groups
   std::size_t places = 0;   ///< of all targets; 0: without novelty
 
   /// Room for every later snapshot of a model with snapshots of this capacity. `assess`: room for
@@ -84,7 +87,7 @@ class ModelBlock {
   static bool assesses(std::span<const std::byte> memory);
 
   /// Publishes the models of all targets and the alignment of the commands; returns the number.
-  /// Requires snapshots within the layout. Cost O(support vectors · inputs), some ten µs. Allocates
+  /// Requires snapshots within the layout. Cost O(support vectors · inputs). Allocates
   /// nothing.
   std::uint64_t publish(std::span<const std::string> input_names,
                         std::span<const Snapshot> snapshots, const Alignment& alignment);

@@ -40,7 +40,8 @@ double $NAME_shift(void);
 inline constexpr std::string_view kLiveFunctions = R"(
 static const struct kelpie_tables *$NAME_newest(void)
 {
-$POINT  return kelpie_newest() ? &kelpie_own.tables : 0;
+  struct kelpie_numbers *const own = kelpie_newest();
+$POINT  return own ? &own->tables : 0;
 }
 
 static void $NAME_unknown(double *values, int count)
@@ -58,24 +59,32 @@ int $NAME_attach(const void *memory, unsigned long long bytes)
   return kelpie_attach(memory, (size_t)bytes);
 }
 
-unsigned long long $NAME_renew(void) { return $NAME_newest() ? kelpie_own.number : 0; }
+unsigned long long $NAME_renew(void) { return $NAME_newest() ? kelpie_own()->number : 0; }
 
-void $NAME_hold(int on) { kelpie_own.held = on; }
+void $NAME_hold(int on) { kelpie_own()->held = on; }
 
-const char *$NAME_problem(void) { return kelpie_own.problem ? kelpie_own.problem : ""; }
+const char *$NAME_problem(void) 
+{
+  const char *const problem = kelpie_own()->problem;
+  return problem ? problem : "";
+}
 
 int $NAME_bounds(double low[$INPUTS], double high[$INPUTS])
 {
-  const int known = $NAME_newest() != 0;
+  const struct kelpie_numbers *const own = kelpie_newest();
   int k;
   for (k = 0; k < $INPUTS; ++k) {
-    low[k] = known ? kelpie_own.bounds[2 * k] : -HUGE_VAL;
-    high[k] = known ? kelpie_own.bounds[2 * k + 1] : HUGE_VAL;
+    low[k] = own ? own->bounds[2 * k] : -HUGE_VAL;
+    high[k] = own ? own->bounds[2 * k + 1] : HUGE_VAL;
   }
-  return !known;
+  return own == 0;
 }
 
-double $NAME_shift(void) { return $NAME_newest() ? kelpie_own.shift : 0; }
+double $NAME_shift(void)
+{
+  const struct kelpie_numbers *const own = kelpie_newest();
+  return own ? own->shift : 0;
+}
 
 void $NAME_predict(const double x[$INPUTS], double y[$TARGETS])
 {
@@ -121,9 +130,10 @@ inline constexpr std::string_view kLiveActuator = R"(
 static struct $NAME_actuator $NAME_actuator_of(int input)
 {
   struct $NAME_actuator actuator = {0, 0, 0, 1, 0, 0, 0};
+  const struct kelpie_numbers *const own = kelpie_newest();
   actuator.input = input;
-  if ($NAME_newest()) {
-    const double *const numbers = kelpie_own.actuators + kelpie_actuator_numbers * input;
+  if (own) {
+    const double *const numbers = own->actuators + kelpie_actuator_numbers * input;
     actuator.neutral = numbers[0];
     actuator.dead_band = numbers[1];
     actuator.astern = numbers[2];

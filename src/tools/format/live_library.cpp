@@ -56,8 +56,8 @@ void compile(const LiveFiles& files) {
   const char* const named = std::getenv("CC");  // NOLINT(concurrency-mt-unsafe): before threads
   const std::filesystem::path draft = files.library.string() + ".draft";
   const std::string compiler = named != nullptr && *named != '\0' ? named : "cc";
-  const int status = run({compiler, "-std=c99", "-O3", "-fPIC", "-shared", "-o", draft.string(),
-                          files.source.string(), "-lm"});
+  const int status = run({compiler, "-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
+                          draft.string(), files.source.string(), "-lm"});
   if (status != 0) {
     std::error_code ignored;
     std::filesystem::remove(draft, ignored);

@@ -161,11 +161,12 @@ class ModelCode {
         {"$DELAY_STEPS", std::to_string(kDelaySteps)},
         {"$REAL", text_.real()},
         {"$ROW", live() ? "$NAME_actuator_of(i)" : "$NAME_actuator_table[i]"},
-        {"$FAILED", live() ? "kelpie_own.number == 0" : "0"},
+        {"$FAILED", live() ? "kelpie_own()->number == 0" : "0"},
         {"$POINT", model_.terms.size() == 0 ? ""
-                                            : "  kelpie_own.tables.steps = $NAME_steps;\n"
-                                              "  kelpie_own.tables.ends = $NAME_ends;\n"
-                                              "  kelpie_own.tables.slopes = $NAME_slopes;\n"},
+                                            : "  if (own) {\n"
+                                              "    own->tables.steps = $NAME_steps;\n"
+                                              "    own->tables.ends = $NAME_ends;\n"
+                                              "    own->tables.slopes = $NAME_slopes;\n  }\n"},
         {"$NAME", options_.name}};
     return replaced(std::string(code), words);
   }
@@ -226,8 +227,10 @@ class ModelCode {
       const auto& [file, layout] = *options_.live;
       text += fmt::format(
           "#define KELPIE_FILE {}\n#define KELPIE_IDENTITY {:#018x}ULL\n"
-          "#define KELPIE_MEMBERS {}\n#define KELPIE_VECTORS {}\n#define KELPIE_PLACES {}\n",
-          c_string(file), layout.identity, layout.members, layout.vectors, layout.places);
+          "#define KELPIE_LANES {}\n#define KELPIE_MEMBERS {}\n#define KELPIE_VECTORS {}\n#define "
+          "KELPIE_PLACES {}\n",
+          c_string(file), layout.identity, BlockLayout::kLanes, layout.members, layout.vectors,
+          layout.places);
     }
     return text + (options_.assess ? fmt::format("#define KELPIE_ASSESS {}\n",
                                                  text_.number(KernelDensity::kEmptyDensity))

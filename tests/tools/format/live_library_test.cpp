@@ -346,7 +346,7 @@ TEST(LiveLibrary, RefusesTheBlockOfAnotherModel) {
   EXPECT_EQ(refusal(random_model(random, shape), nothing),
             "the block belongs to a model with other inputs, targets or terms");
   shape = {};
-  shape.samples = 38;
+  shape.samples = 41;
   EXPECT_EQ(refusal(random_model(random, shape), nothing),
             "the block was written by another export");
   EXPECT_EQ(refusal(model, [](auto& words) { words[0] ^= 1; }),
