@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
+#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 
 namespace kelpie {
@@ -40,6 +42,15 @@ class SharedModel {
   /// DynamicsModel::update(), then a new snapshot once every axis has a model.
   void update(std::span<const double> x, std::span<const double> y, double t);
   void learn_held_back();  ///< DynamicsModel::learn_held_back(), likewise.
+  /// From now on every publication also renews `block`: memory that a library of `kelpie export
+  /// --live` reads, in this process or another (docs/howto/controller.md#swapped-in-place). `inputs` and
+  /// `targets` are the names of the model's columns, `alignment` that of the commands. Another call
+  /// replaces block and alignment; an empty block ends the service. The writer never waits; a
+  /// renewal costs some 50 µs for three axes and allocates nothing. Requires memory that outlives
+  /// this or the service. Throws InputError (`block`) where the memory is no block, belongs to
+  /// other columns or terms, or has too little room for the model's settings. Allocates.
+  void serve(std::span<std::byte> block, std::span<const std::string> inputs,
+             std::span<const std::string> targets, const Alignment& alignment = {});
   const DynamicsModel& model() const { return model_; }
   /// Publications skipped because readers held all snapshots.
   std::int64_t passed_over() const { return passed_over_; }
@@ -59,6 +70,7 @@ class SharedModel {
 
  private:
   struct Publication;
+  struct Service;
 
   /// Calls use(axes) with the snapshots of the latest publication, held; returns its number.
   template <typename Use>
@@ -71,6 +83,7 @@ class SharedModel {
   std::size_t count_;
   std::unique_ptr<Publication[]> publications_;  // NOLINT(*-avoid-c-arrays): not movable
   std::atomic<std::ptrdiff_t> latest_{-1};
+  std::unique_ptr<Service> service_;  ///< null: no block
 };
 
 }  // namespace kelpie

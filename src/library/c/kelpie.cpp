@@ -340,6 +340,15 @@ kelpie_status kelpie_shared_predict_with_jacobian(const kelpie_shared* shared, c
   });
 }
 
+kelpie_status kelpie_shared_serve(kelpie_shared* shared, void* block, size_t bytes) {
+  return kelpie::guarded([&] {
+    kelpie::require_pointer("shared", shared);
+    kelpie::require(block != nullptr || bytes == 0, "block", "is null");
+    const kelpie_model& model = *shared->model;
+    model.shared->serve({static_cast<std::byte*>(block), bytes}, model.inputs, model.targets);
+  });
+}
+
 kelpie_status kelpie_read_trained(const char* json, size_t size, kelpie_trained** model) {
   return kelpie::guarded([&] {
     kelpie::require_pointer("json", json);

@@ -52,6 +52,7 @@ struct LiveArguments {
   std::string speed = "1";
   std::string out;
   std::string record;
+  std::string block;
   std::string plotjuggler;
   std::string page;
   std::string mavlink;  // connection of a vehicle that tells what its messages mean
@@ -113,6 +114,7 @@ live::Configuration configuration_of(const LiveArguments& options) {
   settings.page = options.demo && has_pages() ? kDemoPage : settings.page;
   settings.out = options.out.empty() ? settings.out : options.out;
   settings.record = options.record.empty() ? settings.record : options.record;
+  settings.block = options.block.empty() ? settings.block : options.block;
   if (!options.plotjuggler.empty()) {
     live::parse_endpoint(options.plotjuggler, "--plotjuggler");
     settings.plotjuggler = options.plotjuggler;
@@ -153,8 +155,9 @@ std::string fixed_difference(const live::Configuration& now, const live::Configu
     return field.empty() ? "live.out" : field;
   }
   const bool same_page = now.live.page == next.live.page && now.live.token == next.live.token;
-  return !same_page                   ? "live.page"
-         : !connects_alike(now, next) ? "the connection"
+  return now.live.block != next.live.block ? "live.block"
+         : !same_page                      ? "live.page"
+         : !connects_alike(now, next)      ? "the connection"
                                       : differing(now.settings.values(), next.settings.values());
 }
 
@@ -399,6 +402,8 @@ void add_live(CLI::App& app) {
       ->excludes(freeze);
   add_folder(command, "--record", options->record,
              "folder for a recording of all that comes (MCAP), over live.record");
+  add_file(command, "--block", options->block,
+           "block of `kelpie export --live` to renew with every learned row, over live.block");
   command->add_option("--plotjuggler", options->plotjuggler,
                       "port of PlotJuggler's UDP server on this machine, or host:port");
   command->add_option("--page", options->page,

@@ -26,6 +26,9 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
     : configuration_(configuration),
       folder_(std::move(folder)),
       output_(output),
+      block_(configuration.live.block.empty()
+                 ? nullptr
+                 : std::make_unique<file::SharedFile>(configuration.live.block)),
       model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, saved))),
       alignment_(configuration.plan.inputs, configuration.plan.targets.size(),
                  configuration.plan.rate_hz, configuration.settings.shared.states,
@@ -60,6 +63,7 @@ void LiveLearner::begin_alignment(bool finds_it_anew, const std::optional<SavedR
     alignment_.adopt({.alignment = alignment_of(configuration_, seconds), .gain = 0.0, .why = {}});
   }
   publish_alignment();
+  serve_block();
 }
 
 void LiveLearner::process(const Row& row) {
@@ -171,6 +175,7 @@ void LiveLearner::begin_anew() {
     const std::lock_guard lock(mutex_);
     model_.swap(next);
   }
+  serve_block();
   progress_.clock = {};
   progress_.learned = 0;
   changes_ = ChangeReporter(configuration_.plan, false);
@@ -220,6 +225,7 @@ void LiveLearner::update_alignment(bool afresh) {
   }
   publish_alignment();
   if (is_known()) {
+    serve_block();
     return;
   }
   output_.event(alignment_.alignment().text() + ": " + found.why +
@@ -290,6 +296,19 @@ void LiveLearner::publish_alignment() {
   auto next = std::make_shared<const Alignment>(alignment_.alignment());
   const std::lock_guard lock(mutex_);
   published_.swap(next);
+}
+
+// The block keeps the last model until the next one is ready.
+void LiveLearner::serve_block() {
+  if (!block_) {
+    return;
+  }
+  try {
+    model_->serve(block_->bytes(), configuration_.plan.inputs, configuration_.plan.targets,
+                  alignment_.alignment());
+  } catch (const InputError& error) {
+    throw InputError({.file = configuration_.live.block, .line = 0, .field = {}}, error.what());
+  }
 }
 
 void LiveLearner::give_model() {

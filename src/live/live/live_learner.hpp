@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "file/shared_file.hpp"
 #include "kelpie/model/live_alignment.hpp"
 #include "kelpie/model/shared_model.hpp"
 #include "live/authority_reporter.hpp"
@@ -32,9 +33,10 @@ namespace kelpie::live {
 /// the first on does so too.
 class LiveLearner {
  public:
-  /// Writes checkpoints and the model to `folder`. Resumes from `saved`, of the same configuration;
+  /// Writes checkpoints and the model to `folder`, and renews the block of the configuration.
+  /// Resumes from `saved`, of the same configuration;
   /// rows of the same `recording` that the checkpoint has learned are skipped. Throws InputError
-  /// (file) where the saved model cannot be resumed.
+  /// (file) where the saved model cannot be resumed, or the block cannot be renewed.
   LiveLearner(const Configuration& configuration, std::filesystem::path folder,
               const std::optional<log::Reach>& recording, std::optional<SavedRun> saved,
               Output& output);
@@ -82,12 +84,14 @@ class LiveLearner {
   std::span<const Decision> predict(const SharedModel& model, std::span<const double> x);
   void update(std::span<const double> x, std::span<const double> y, double t);
   void publish_alignment();
+  void serve_block();
   void give_model();
 
   const Configuration& configuration_;
   std::filesystem::path folder_;
   Output& output_;
-  std::shared_ptr<SharedModel> model_;  // replaced under mutex_, in the learning thread
+  std::unique_ptr<file::SharedFile> block_;  // null: no block
+  std::shared_ptr<SharedModel> model_;       // replaced under mutex_, in the learning thread
   LiveAlignment alignment_;
   bool finds_alignment_ = false;
   Progress progress_;

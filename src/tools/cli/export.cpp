@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "fmu/fmu_file.hpp"
+#include "format/live_library.hpp"
 #include "format/model_c.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
@@ -23,24 +25,44 @@ struct ExportArguments {
   std::string model;
   std::string fmu;
   std::string c_file;
+  std::string live;
   std::string header;
   std::vector<std::string> units;
   format::CodeOptions code;
 };
 
-void export_c(const TrainedModel& model, const ExportArguments& options,
-              const std::map<std::string, Unit>& units) {
+format::CodeOptions code_options(const ExportArguments& options,
+                                 const std::map<std::string, Unit>& units) {
   format::CodeOptions code = options.code;
   code.source = options.model;
   code.units = units;
+  return code;
+}
+
+void export_c(const TrainedModel& model, const ExportArguments& options,
+              const format::CodeOptions& code) {
   file::write_file_whole(options.c_file, format::model_c(model, code));
-  if (!options.header.empty()) {
-    file::write_file_whole(options.header, format::model_h(model, code));
-  }
   say("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
       model.axes.size(), code.single ? "float" : "double");
   say("{:.0f} kB of constants, no memory but the stack\n",
       static_cast<double>(format::table_bytes(model, code)) / 1000.0);
+}
+
+void export_live(const TrainedModel& model, const format::LiveFiles& files,
+                 const format::CodeOptions& code) {
+  format::write_live_library(files, model, code);
+  say("library: {} (for CasADi: external(\"{}\", \"{}\"))\nblock:   {} (kelpie live --block {})\n"
+      "source:  {}\n",
+      files.library.string(), code.name, files.library.string(), files.block.string(),
+      files.block.string(), files.source.string());
+}
+
+void write_header(const TrainedModel& model, const ExportArguments& options,
+                  format::CodeOptions code) {
+  if (!options.live.empty()) {
+    code.live = {.file = {}, .layout = {}};  // prototypes need neither
+  }
+  file::write_file_whole(options.header, format::model_h(model, code));
 }
 
 // The model's own units, and those given beside.
@@ -53,19 +75,32 @@ fmu::FmuOptions fmu_options(const format::ModelInfo& info, const ExportArguments
   return unit;
 }
 
-void export_model(const ExportArguments& options) {
-  if (options.c_file.empty() && options.fmu.empty()) {
-    throw InputError("export", "needs --c FILE or --fmu FILE: what to write");
-  }
-  std::vector<std::string> taken{options.model};
-  for (const auto& [option, name] :
-       {std::pair{"--c", &options.c_file}, std::pair{"--header", &options.header},
-        std::pair{"--fmu", &options.fmu}}) {
-    if (!name->empty()) {
-      check_output(option, *name, taken);
-      taken.push_back(*name);
+void check_outputs(const ExportArguments& options) {
+  std::vector<std::pair<const char*, std::string>> outputs{
+      {"--c", options.c_file}, {"--header", options.header}, {"--fmu", options.fmu}};
+  if (!options.live.empty()) {
+    const format::LiveFiles live(options.live);
+    for (const std::filesystem::path& file : {live.library, live.block, live.source}) {
+      outputs.emplace_back("--live", file.string());
     }
   }
+  std::vector<std::string> taken{options.model};
+  for (const auto& [option, name] : outputs) {
+    if (!name.empty()) {
+      check_output(option, name, taken);
+      taken.push_back(name);
+    }
+  }
+}
+
+void export_model(const ExportArguments& options) {
+  if (options.c_file.empty() && options.live.empty() && options.fmu.empty()) {
+    throw InputError("export", "needs --c FILE, --live FILE or --fmu FILE: what to write");
+  }
+  if (!options.header.empty() && options.c_file.empty() && options.live.empty()) {
+    throw InputError("--header", "needs --c FILE or --live FILE");
+  }
+  check_outputs(options);
   std::map<std::string, Unit> units;
   for (const std::string& assignment : options.units) {
     const auto [column, unit] = format::key_and_value(assignment, "--units");
@@ -73,8 +108,15 @@ void export_model(const ExportArguments& options) {
   }
   format::ModelInfo info;
   const TrainedModel model = read_given_model(options.model, &info);
+  const format::CodeOptions code = code_options(options, units);
   if (!options.c_file.empty()) {
-    export_c(model, options, units);
+    export_c(model, options, code);
+  }
+  if (!options.live.empty()) {
+    export_live(model, format::LiveFiles(options.live), code);
+  }
+  if (!options.header.empty()) {
+    write_header(model, options, code);
   }
   if (!options.fmu.empty()) {
     fmu::write_fmu(options.fmu, model, fmu_options(info, options, units));
@@ -85,13 +127,18 @@ void export_model(const ExportArguments& options) {
 }  // namespace
 
 void add_export(CLI::App& app) {
-  const auto [command, options] = add_command(
-      app, "export", "Write a learned model for other programs: as C, or as a unit of FMI 2.0",
-      export_model);
+  const auto [command, options] = add_command(app, "export",
+                                              "Write a learned model for other programs: as C, as "
+                                              "a library that follows the learner, or as "
+                                              "a unit of FMI 2.0",
+                                              export_model);
   add_model(command, "model", options->model);
-  CLI::Option* const c = add_file(command, "--c", options->c_file,
-                                  "C file to write: C99 that needs nothing but exp()");
-  add_file(command, "--header", options->header, "header file to write for callers")->needs(c);
+  add_file(command, "--c", options->c_file, "C file to write: C99 that needs nothing but exp()");
+  add_file(command, "--live", options->live,
+           "shared library to write, with CasADi's functions, by the machine's C compiler; its "
+           "numbers are in a block beside it, FILE with the ending .block, which `kelpie live "
+           "--block` renews");
+  add_file(command, "--header", options->header, "header file to write for callers");
   add_file(command, "--fmu", options->fmu,
            "co-simulation unit of FMI 2.0 to write: the vehicle in simulation");
   command->add_flag("--float", options->code.single, "float instead of double");
@@ -106,7 +153,7 @@ void add_export(CLI::App& app) {
   add_list(command, "--units", options->units,
            "units of columns, kept in the file, as in u=m/s,th1=rev/s,udot=m/s^2");
   add_examples(command, "export --c model.c --header model.h",
-               "export out/learn/model.json --fmu vehicle.fmu");
+               "export out/learn/model.json --live vehicle.so");
 }
 
 }  // namespace kelpie::cli

@@ -7,8 +7,143 @@
 // and $KEPT are replaced by model_c.cpp; everything else stands in model_eval.inc.
 namespace kelpie::format {
 
-/// model_eval.inc, embedded by cmake/PageAssets.cmake.
+/// model_eval.inc and model_block.inc, embedded by cmake/PageAssets.cmake.
 extern const std::string_view kModelEvaluator;
+extern const std::string_view kModelBlock;
+
+inline constexpr std::string_view kLiveNote =
+    R"( * The numbers are those of the latest publication in the block, which `kelpie live` renews. Where
+ * there is none, y and jacobian are NaN, $NAME_renew() is 0, and $NAME_problem() tells why.
+)";
+
+inline constexpr std::string_view kLivePrototypes = R"(
+/* The block at another path than the one that this file was written with; before the first call of
+ * any function. 0: done. */
+int $NAME_open(const char *file);
+/* The block in memory of this process, by the same rule. */
+int $NAME_attach(const void *memory, unsigned long long bytes);
+/* Takes over the latest publication for the calling thread, as every other function does too.
+ * Returns its number, 1, 2, 3 and so on; 0: there is none. */
+unsigned long long $NAME_renew(void);
+/* 1: the calling thread keeps its numbers, as an optimiser's iterations want; 0: no longer. */
+void $NAME_hold(int on);
+/* Why the last call of this thread had no numbers; "" where it had. */
+const char *$NAME_problem(void);
+/* The least and the greatest value of every input among the samples that the learner knows;
+ * infinite: not known. 0: done. */
+int $NAME_bounds(double low[$INPUTS], double high[$INPUTS]);
+/* Predictions belong to the commands that the log has so many seconds later. */
+double $NAME_shift(void);
+)";
+
+/// The functions of an exported model whose numbers are in a block.
+inline constexpr std::string_view kLiveFunctions = R"(
+static const struct kelpie_tables *$NAME_newest(void)
+{
+  struct kelpie_numbers *const own = kelpie_newest();
+$POINT  return own ? &own->tables : 0;
+}
+
+static void $NAME_unknown(double *values, int count)
+{
+  int k;
+  for (k = 0; k < count; ++k) {
+    values[k] = NAN;
+  }
+}
+
+int $NAME_open(const char *file) { return kelpie_open(file); }
+
+int $NAME_attach(const void *memory, unsigned long long bytes)
+{
+  return kelpie_attach(memory, (size_t)bytes);
+}
+
+unsigned long long $NAME_renew(void) { return $NAME_newest() ? kelpie_own()->number : 0; }
+
+void $NAME_hold(int on) { kelpie_own()->held = on; }
+
+const char *$NAME_problem(void) 
+{
+  const char *const problem = kelpie_own()->problem;
+  return problem ? problem : "";
+}
+
+int $NAME_bounds(double low[$INPUTS], double high[$INPUTS])
+{
+  const struct kelpie_numbers *const own = kelpie_newest();
+  int k;
+  for (k = 0; k < $INPUTS; ++k) {
+    low[k] = own ? own->bounds[2 * k] : -HUGE_VAL;
+    high[k] = own ? own->bounds[2 * k + 1] : HUGE_VAL;
+  }
+  return own == 0;
+}
+
+double $NAME_shift(void)
+{
+  const struct kelpie_numbers *const own = kelpie_newest();
+  return own ? own->shift : 0;
+}
+
+void $NAME_predict(const double x[$INPUTS], double y[$TARGETS])
+{
+  const struct kelpie_tables *const tables = $NAME_newest();
+  if (tables) {
+    kelpie_evaluate(tables, x, y, 0);
+  } else {
+    $NAME_unknown(y, $TARGETS);
+  }
+}
+
+void $NAME_predict_with_jacobian(const double x[$INPUTS], double y[$TARGETS],
+                                double jacobian[$TARGETS * $INPUTS])
+{
+  const struct kelpie_tables *const tables = $NAME_newest();
+  if (tables) {
+    kelpie_evaluate(tables, x, y, jacobian);
+  } else {
+    $NAME_unknown(y, $TARGETS);
+    $NAME_unknown(jacobian, $TARGETS * $INPUTS);
+  }
+}
+)";
+
+inline constexpr std::string_view kLiveAssess = R"(
+void $NAME_assess(const double x[$INPUTS], double y[$TARGETS], double half_width[$TARGETS],
+                  double novelty[$TARGETS])
+{
+  const struct kelpie_tables *const tables = $NAME_newest();
+  if (tables) {
+    kelpie_evaluate(tables, x, y, 0);
+    kelpie_assess(tables, x, half_width, novelty);
+  } else {
+    $NAME_unknown(y, $TARGETS);
+    $NAME_unknown(half_width, $TARGETS);
+    $NAME_unknown(novelty, $TARGETS);
+  }
+}
+)";
+
+/// The numbers of an input's actuator in the block; without numbers, none.
+inline constexpr std::string_view kLiveActuator = R"(
+static struct $NAME_actuator $NAME_actuator_of(int input)
+{
+  struct $NAME_actuator actuator = {0, 0, 0, 1, 0, 0, 0};
+  const struct kelpie_numbers *const own = kelpie_newest();
+  actuator.input = input;
+  if (own) {
+    const double *const numbers = own->actuators + kelpie_actuator_numbers * input;
+    actuator.neutral = numbers[0];
+    actuator.dead_band = numbers[1];
+    actuator.astern = numbers[2];
+    actuator.lag = numbers[3];
+    actuator.rate = numbers[4];
+    actuator.delay = numbers[5];
+  }
+  return actuator;
+}
+)";
 
 inline constexpr std::string_view kAssessNote =
     R"( * $NAME_assess also gives half the width of the interval around y[i] at the end of learning
@@ -102,7 +237,8 @@ void $NAME_actuators_step(struct $NAME_actuators *state, $REAL dt, $REAL x[$INPU
 {
   int i, k;
   for (i = 0; i < $ACTUATORS; ++i) {
-    const struct $NAME_actuator *actuator = &$NAME_actuator_table[i];
+    const struct $NAME_actuator row = $ROW;
+    const struct $NAME_actuator *actuator = &row;
     const $REAL effect = $NAME_shaped(actuator, x[actuator->input]);
     const int begins = state->kept[i] == 0;
     for (k = 0; k < state->kept[i]; ++k) {
@@ -198,7 +334,7 @@ int $NAME(const double **arg, double **res, casadi_int *iw, double *w, int mem)
   if (res[0]) {
     $NAME_predict($NAME_given(arg, zeros), res[0]);
   }
-  return 0;
+  return $FAILED;
 }
 
 /* Arguments x and y, result dy/dx by columns. */
@@ -220,7 +356,7 @@ int jac_$NAME(const double **arg, double **res, casadi_int *iw, double *w, int m
       }
     }
   }
-  return 0;
+  return $FAILED;
 }
 )";
 

@@ -31,6 +31,9 @@ void check(const TrainedModel& model, const CodeOptions& options) {
   if (options.casadi && options.single) {
     throw InputError("--casadi", "calls with double; it doesn't go with --float");
   }
+  if (options.live && options.single) {
+    throw InputError("--live", "renews doubles; it doesn't go with --float");
+  }
   std::vector<std::string> columns = model.input_names;
   for (const TrainedModel::Axis& axis : model.axes) {
     columns.push_back(axis.name);
@@ -114,10 +117,13 @@ class ModelCode {
         text_(options.single),
         terms_(tables_of(model.terms, text_)),
         targets_(model.target_names()) {
-    for (std::size_t k = 0; k < model.alignment.actuators.size(); ++k) {
+    for (std::size_t k = 0; !live() && k < model.alignment.actuators.size(); ++k) {
       if (!model.alignment.actuators[k].none()) {
         actuators_.push_back(k);
       }
+    }
+    for (std::size_t k = 0; live() && k < model.input_names.size(); ++k) {
+      actuators_.push_back(k);  // any command may turn out to have one
     }
     if (!actuators_.empty()) {
       terms_.functions.insert("expm1");
@@ -125,10 +131,11 @@ class ModelCode {
   }
 
   std::string file() const {
-    return comment() + "\n#include <math.h>\n" + prototypes() + names("input", model_.input_names) +
-           names("target", targets_) + definitions() + evaluator() + tables() + filled(kFunctions) +
-           (options_.assess ? filled(kAssess) : "") + actuators() +
-           (options_.casadi ? casadi() : "");
+    return comment() + includes() + prototypes() + names("input", model_.input_names) +
+           names("target", targets_) + definitions() + without_licence(kModelEvaluator) +
+           (live() ? without_licence(kModelBlock) + term_tables() + live_functions()
+                   : tables() + filled(kFunctions) + (options_.assess ? filled(kAssess) : "")) +
+           actuators() + (options_.casadi ? casadi() : "");
   }
 
   std::string header() const {
@@ -136,6 +143,15 @@ class ModelCode {
   }
 
  private:
+  bool live() const { return options_.live.has_value(); }
+
+  std::string includes() const {
+    return live() ? "\n#define _POSIX_C_SOURCE 200809L\n#include <fcntl.h>\n#include <math.h>\n"
+                    "#include <stddef.h>\n#include <string.h>\n#include <sys/mman.h>\n"
+                    "#include <sys/stat.h>\n#include <unistd.h>\n"
+                  : "\n#include <math.h>\n";
+  }
+
   std::string filled(std::string_view code) const {
     const std::vector<std::pair<std::string, std::string>> words{
         {"$INPUTS", std::to_string(model_.input_names.size())},
@@ -144,25 +160,40 @@ class ModelCode {
         {"$KEPT", std::to_string(most_kept())},
         {"$DELAY_STEPS", std::to_string(kDelaySteps)},
         {"$REAL", text_.real()},
+        {"$ROW", live() ? "$NAME_actuator_of(i)" : "$NAME_actuator_table[i]"},
+        {"$FAILED", live() ? "kelpie_own()->number == 0" : "0"},
+        {"$POINT", model_.terms.size() == 0 ? ""
+                                            : "  if (own) {\n"
+                                              "    own->tables.steps = $NAME_steps;\n"
+                                              "    own->tables.ends = $NAME_ends;\n"
+                                              "    own->tables.slopes = $NAME_slopes;\n  }\n"},
         {"$NAME", options_.name}};
     return replaced(std::string(code), words);
   }
 
   std::string prototypes() const {
     return filled(kPrototypes) + (options_.assess ? filled(kAssessPrototype) : "") +
-           (actuators_.empty() ? "" : filled(kActuatorPrototypes));
+           (actuators_.empty() ? "" : filled(kActuatorPrototypes)) +
+           (live() ? filled(kLivePrototypes) : "");
   }
 
   int most_kept() const {
-    const bool late = std::ranges::any_of(model_.alignment.actuators, [](const Actuator& actuator) {
-      return actuator.delay_s > 0.0;
-    });
+    const bool late =
+        live() || std::ranges::any_of(model_.alignment.actuators, [](const Actuator& actuator) {
+          return actuator.delay_s > 0.0;
+        });
     return late ? kDelaySteps + 4 : 2;
   }
 
   std::string actuators() const {
     if (actuators_.empty()) {
       return "";
+    }
+    const std::string type = filled(
+        "\nstruct $NAME_actuator {\n  int input;\n"
+        "  $REAL neutral, dead_band, astern, lag, rate, delay;\n};\n");
+    if (live()) {
+      return type + filled(kLiveActuator) + filled(kActuators);
     }
     std::string rows;
     for (const std::size_t k : actuators_) {
@@ -174,10 +205,8 @@ class ModelCode {
       }
       rows += "}, /* " + c_string(command) + " */\n";
     }
-    return filled(
-               "\nstruct $NAME_actuator {\n  int input;\n"
-               "  $REAL neutral, dead_band, astern, lag, rate, delay;\n};\n") +
-           table("struct $NAME_actuator", "actuator_table[$ACTUATORS]", rows) + filled(kActuators);
+    return type + table("struct $NAME_actuator", "actuator_table[$ACTUATORS]", rows) +
+           filled(kActuators);
   }
 
   // What model_eval.inc wants to be defined.
@@ -194,14 +223,26 @@ class ModelCode {
         model_.input_names.size(), targets_.size(), model_.terms.size());
     text += fmt::format("#define KELPIE_SLOPES {}\n#define KELPIE_STACK {}\n", terms_.slope_count,
                         terms_.depth);
+    if (live()) {
+      const auto& [file, layout] = *options_.live;
+      text += fmt::format(
+          "#define KELPIE_FILE {}\n#define KELPIE_IDENTITY {:#018x}ULL\n"
+          "#define KELPIE_LANES {}\n#define KELPIE_MEMBERS {}\n#define KELPIE_VECTORS {}\n#define "
+          "KELPIE_PLACES {}\n",
+          c_string(file), layout.identity, BlockLayout::kLanes, layout.members, layout.vectors,
+          layout.places);
+    }
     return text + (options_.assess ? fmt::format("#define KELPIE_ASSESS {}\n",
                                                  text_.number(KernelDensity::kEmptyDensity))
                                    : "");
   }
 
-  // All of the file but the line of its licence.
-  static std::string evaluator() {
-    return "\n" + std::string(kModelEvaluator.substr(kModelEvaluator.find('\n') + 1));
+  static std::string without_licence(std::string_view file) {
+    return "\n" + std::string(file.substr(file.find('\n') + 1));
+  }
+
+  std::string live_functions() const {
+    return filled(kLiveFunctions) + (options_.assess ? filled(kLiveAssess) : "");
   }
 
   std::string casadi() const {
@@ -269,15 +310,16 @@ class ModelCode {
         " *   {}_predict(x, y);\n"
         " *   {}_predict_with_jacobian(x, y, jacobian);\n *\n"
         " * jacobian[i * {} + j] is the derivative of y[i] by x[j]; at a kink of a term, that to\n"
-        " * the right. Where a number of x isn't finite, y and jacobian are NaN.\n{}{}"
-        " * Of <math.h>: {}. C99; no memory is asked for and nothing global changes, so that "
-        "calls\n"
-        " * may run side by side. */\n",
+        " * the right. Where a number of x isn't finite, y and jacobian are NaN.\n{}{}{}"
+        " * Of <math.h>: {}. C99{} */\n",
         c_string(options_.source), column_lines("x", model_.input_names),
         column_lines("y", targets_), shift(), gaps, text_.real(), model_.input_names.size(),
         targets_.size(), targets_.size() * model_.input_names.size(), options_.name, options_.name,
         model_.input_names.size(), options_.assess ? filled(kAssessNote) : "",
-        actuators_.empty() ? "" : filled(kActuatorNote), library());
+        actuators_.empty() ? "" : filled(kActuatorNote), live() ? filled(kLiveNote) : "", library(),
+        live() ? ", POSIX. Calls may run side by side: every thread has a copy of the numbers."
+               : "; no memory is asked for and nothing global changes, so that calls\n"
+                 " * may run side by side.");
   }
 
   std::string names(const char* kind, std::span<const std::string> columns) const {
@@ -330,11 +372,7 @@ class ModelCode {
                        table("struct kelpie_member", "members[]", members) +
                        table("$REAL", "support_vectors[][$INPUTS]", vectors, none) +
                        table("$REAL", "weights[]", weights, "  0\n");
-    if (terms) {
-      text += table("struct kelpie_step", "steps[]", terms_.steps) +
-              table("short", "ends[]", "  " + terms_.ends + "\n") +
-              table("short", "slopes[][2]", terms_.slopes);
-    }
+    text += term_tables();
     text += options_.assess ? known_tables(none) : "";
     const char* const fields = "  $NAME_axes, $NAME_members, $NAME_support_vectors, $NAME_weights";
     return text +
@@ -343,6 +381,13 @@ class ModelCode {
                         std::string(terms ? ",\n  $NAME_steps, $NAME_ends, $NAME_slopes" : "") +
                         (options_.assess ? ",\n  $NAME_known, $NAME_places, $NAME_densities" : "") +
                         "\n"));
+  }
+
+  std::string term_tables() const {
+    return model_.terms.size() == 0 ? ""
+                                    : table("struct kelpie_step", "steps[]", terms_.steps) +
+                                          table("short", "ends[]", "  " + terms_.ends + "\n") +
+                                          table("short", "slopes[][2]", terms_.slopes);
   }
 
   std::string known_tables(const std::string& none) const {

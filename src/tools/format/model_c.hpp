@@ -3,12 +3,20 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/unit.hpp"
+#include "model/model_block.hpp"
 
 namespace kelpie::format {
+
+/// The block with the numbers of an exported model, which a learner renews.
+struct LiveBlock {
+  std::string file;  ///< opened by the exported model
+  BlockLayout layout;
+};
 
 /// Options of the export to C.
 struct CodeOptions {
@@ -18,6 +26,7 @@ struct CodeOptions {
   bool casadi = false;                ///< adds the functions called by CasADi and acados
   std::string source = "model.json";  ///< origin of the model, for the comment at the top
   std::map<std::string, Unit> units;  ///< of columns, by name; missing columns have no unit
+  std::optional<LiveBlock> live{};    ///< numbers from a block in place of constant tables
 };
 
 /// A trained model as one file of C99 (docs/howto/controller.md): constant tables and the evaluator
@@ -26,8 +35,12 @@ struct CodeOptions {
 /// TrainedModel::predict_with_jacobian, in double to about 1e-13 of the scale of a target, with NaN
 /// for inputs that aren't finite; `assess` adds interval and novelty of TrainedModel::predict.
 ///
+/// With `live` the terms alone are constant, and model_block.inc reads all other numbers: the file
+/// then needs POSIX, and copies the latest publication into memory of the calling thread.
+///
 /// Throws InputError on a name other than letters, digits and underscores with a letter first, on a
-/// unit for an unknown column, on `casadi` with `single`, and on a number out of range for float.
+/// unit for an unknown column, on `casadi` or `live` with `single`, and on a number out of range
+/// for float.
 std::string model_c(const TrainedModel& model, const CodeOptions& options);
 
 /// The header of the exported file: prototypes for C and C++. Throws as model_c() does.

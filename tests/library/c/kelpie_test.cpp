@@ -16,6 +16,8 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "model/dynamics_axis.hpp"
+#include "model/model_block.hpp"
 
 namespace kelpie::c_test {
 namespace {
@@ -343,6 +345,36 @@ TEST(InC, OneThreadTeachesWhileAnotherPredicts) {
   kelpie_shared* twice = nullptr;
   EXPECT_EQ(kelpie_share(model, &twice), KELPIE_BAD_INPUT);
   EXPECT_EQ(kelpie_share(nullptr, &twice), KELPIE_BAD_INPUT);
+}
+
+TEST(InC, ALearnerRenewsABlock) {
+  const DynamicsModel like = the_class();
+  const std::vector<Snapshot> capacity{like.mechanisms(0).snapshot(),
+                                       like.mechanisms(1).snapshot()};
+  const std::vector<std::string> inputs(kInputs.begin(), kInputs.end());
+  const std::vector<std::string> targets(kTargets.begin(), kTargets.end());
+  const BlockLayout layout =
+      BlockLayout::of(inputs, targets, like.mechanisms(0).terms(), capacity, false);
+  std::vector<std::uint64_t> words(layout.bytes() / sizeof(std::uint64_t));
+  ModelBlock::clear(std::as_writable_bytes(std::span(words)), layout);
+  kelpie_shared* shared = nullptr;
+  ASSERT_EQ(kelpie_share(made().release(), &shared), KELPIE_OK);
+  const std::unique_ptr<kelpie_shared, decltype(&kelpie_free_shared)> owned(shared,
+                                                                            kelpie_free_shared);
+  EXPECT_EQ(kelpie_shared_serve(shared, words.data(), 64), KELPIE_BAD_INPUT);
+  EXPECT_EQ(std::string(kelpie_last_error()).find("block: is no block"), 0U);
+  EXPECT_EQ(kelpie_shared_serve(shared, nullptr, 64), KELPIE_BAD_INPUT);
+  EXPECT_EQ(kelpie_shared_serve(nullptr, words.data(), 64), KELPIE_BAD_INPUT);
+  ASSERT_EQ(kelpie_shared_serve(shared, words.data(), layout.bytes()), KELPIE_OK);
+  std::int64_t number = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Sample s = sample(i);
+    ASSERT_EQ(kelpie_shared_update(shared, s.x.data(), 4, s.y.data(), 2, s.t, nullptr), KELPIE_OK);
+  }
+  std::array<kelpie_prediction, 2> y{};
+  kelpie_shared_assess(shared, sample(3).x.data(), 4, y.data(), 2, 0.0, &number);
+  EXPECT_EQ(words[3], static_cast<std::uint64_t>(number));
+  EXPECT_EQ(kelpie_shared_serve(shared, nullptr, 0), KELPIE_OK);
 }
 
 TEST(InC, AuthorityIsThatOfTheClass) {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "allocation_count.hpp"
+#include "model/dynamics_axis.hpp"
+#include "model/model_block.hpp"
 #include "vehicle_stream.hpp"
 
 namespace kelpie::shared_model_test {
@@ -101,6 +103,13 @@ TEST(SharedModel, PublishingAndPredictingAllocateNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   const Drive drive = testing::drive(9, 500);
   SharedModel shared = make(drive);
+  const std::vector<Snapshot> capacity{shared.model().mechanisms(0).snapshot(),
+                                       shared.model().mechanisms(1).snapshot()};
+  const BlockLayout layout = BlockLayout::of(drive.inputs, drive.targets,
+                                             shared.model().mechanisms(0).terms(), capacity, true);
+  std::vector<std::uint64_t> words(layout.bytes() / sizeof(std::uint64_t));
+  ModelBlock::clear(std::as_writable_bytes(std::span(words)), layout);
+  shared.serve(std::as_writable_bytes(std::span(words)), drive.inputs, drive.targets);
   std::array<Prediction, 2> y{};
   std::size_t before = 0;
   for (std::size_t i = 0; i < drive.x.size(); ++i) {
@@ -111,6 +120,7 @@ TEST(SharedModel, PublishingAndPredictingAllocateNothing) {
     shared.predict(drive.x[i], std::span<Prediction>(y));
   }
   EXPECT_EQ(testing::allocations, before);
+  EXPECT_EQ(words[3], 451U);  // every row after the 49 of the warm-up renewed the block
 }
 
 // Readers at full speed. What each of them was told by a picture is what the writer found when it

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "cli/command.hpp"
 
 namespace kelpie::export_test {
@@ -24,7 +26,8 @@ TEST_F(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   outcome = exported("--units udott=m/s^2");
   testing::expect_refused(outcome, "no column 'udott' (did you mean 'udot'?)");
   EXPECT_FALSE(exists("model.c"));
-  testing::expect_refused(run("export out/model.json"), "needs --c FILE or --fmu FILE");
+  testing::expect_refused(run("export out/model.json"),
+                          "needs --c FILE, --live FILE or --fmu FILE");
   EXPECT_EQ(run("export log.csv --c model.c").exit_code, 2);
 
   const std::string model = content("out/model.json");
@@ -51,6 +54,29 @@ TEST_F(Export, WritesAUnitOfFmi) {
   testing::expect_refused(run("export out/model.json --fmu vehicle.fmu --units w=m/s"),
                           "there is no column 'w' in the model");
   EXPECT_EQ(run("export out/model.json --fmu out/model.json").exit_code, 2);
+}
+
+TEST_F(Export, WritesALibraryWithABlockAndRefusesWhatItCannot) {
+  write("log.csv", little_log(600));
+  testing::succeeded(run("learn log.csv --out out"));
+  const Outcome outcome =
+      testing::succeeded(run("export out/model.json --live twin.so --header twin.h --name twin"));
+  EXPECT_NE(outcome.out.find("library: twin.so"), std::string::npos);
+  EXPECT_EQ(content("twin.block").substr(0, 8), "blkelk01");
+  EXPECT_NE(content("twin.h").find("unsigned long long twin_renew(void);"), std::string::npos);
+  EXPECT_EQ(content("twin.so").substr(1, 3), "ELF");
+  testing::expect_refused(run("export out/model.json --live a.so --float"),
+                          "--live: renews doubles");
+  EXPECT_FALSE(exists("a.so"));
+  testing::expect_refused(run("export out/model.json --live twin.c"), "--live");
+  testing::expect_refused(run("export out/model.json --fmu a.fmu --header a.h"),
+                          "--header: needs --c FILE or --live FILE");
+  ::setenv("CC", "no-such-compiler", 1);  // NOLINT(concurrency-mt-unsafe): one thread
+  const Outcome without = run("export out/model.json --live a.so");
+  ::unsetenv("CC");  // NOLINT(concurrency-mt-unsafe): one thread
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_NE(without.err.find("CC names another"), std::string::npos) << without.err;
+  EXPECT_FALSE(exists("a.so"));
 }
 
 }  // namespace

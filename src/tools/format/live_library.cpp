@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/live_library.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "file/atomic_file.hpp"
+#include "file/shared_file.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "model/dynamics_axis.hpp"
+#include "model/snapshot.hpp"
+
+namespace kelpie::format {
+namespace {
+
+std::string block_content(const TrainedModel& model, const BlockLayout& layout) {
+  std::vector<std::uint64_t> words(layout.bytes() / sizeof(std::uint64_t));
+  const std::span<std::byte> memory = std::as_writable_bytes(std::span(words));
+  ModelBlock::clear(memory, layout);
+  ModelBlock(memory, layout).publish(model.input_names, model.axes, model.alignment);
+  return {reinterpret_cast<const char*>(memory.data()), memory.size()};  // NOLINT: bytes of a file
+}
+
+int run(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) {
+    arguments.push_back(word.data());
+  }
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int error =
+      ::posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments.data(), environ);
+  if (error != 0) {
+    throw Failure("the C compiler '" + words[0] +
+                  "' cannot be run: " + std::generic_category().message(error) +
+                  "; the environment variable CC names another");
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+void compile(const LiveFiles& files) {
+  const char* const named = std::getenv("CC");  // NOLINT(concurrency-mt-unsafe): before threads
+  const std::filesystem::path draft = files.library.string() + ".draft";
+  const std::string compiler = named != nullptr && *named != '\0' ? named : "cc";
+  const int status = run({compiler, "-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
+                          draft.string(), files.source.string(), "-lm"});
+  if (status != 0) {
+    std::error_code ignored;
+    std::filesystem::remove(draft, ignored);
+    throw Failure("the C compiler '" + compiler + "' could not compile " + files.source.string());
+  }
+  std::filesystem::rename(draft, files.library);
+}
+
+}  // namespace
+
+LiveFiles::LiveFiles(std::filesystem::path library_file)
+    : library(std::move(library_file)), block(library), source(library) {
+  block.replace_extension(".block");
+  source.replace_extension(".c");
+}
+
+BlockLayout live_layout(const TrainedModel& model, bool assess) {
+  const DynamicsModel learner(model.input_names, model.target_names(), model.settings);
+  std::vector<Snapshot> capacity;
+  for (std::size_t k = 0; k < model.axes.size(); ++k) {
+    capacity.push_back(learner.mechanisms(k).snapshot());
+  }
+  return BlockLayout::of(model.input_names, model.target_names(), model.terms, capacity, assess);
+}
+
+void write_live_library(const LiveFiles& files, const TrainedModel& model, CodeOptions options) {
+  if (file::is_shared(files.block)) {
+    throw InputError({.file = files.block.string(), .line = 0, .field = {}},
+                     "is renewed by a running learner; stop the learner first");
+  }
+  options.casadi = true;
+  options.live = {.file = std::filesystem::absolute(files.block).string(),
+                  .layout = live_layout(model, options.assess)};
+  const std::string source = model_c(model, options);
+  file::write_file_whole(files.block, block_content(model, options.live->layout));
+  file::write_file_whole(files.source, source);
+  compile(files);
+}
+
+}  // namespace kelpie::format
