@@ -62,7 +62,7 @@ struct BlockLayout {
 };
 
 /// FNV-1a over the names of columns and the texts of terms: a library and a block with the same
-/// identity take the same numbers (Fowler, Noll, Vo: RFC 9923).
+/// identity take the same numbers (Fowler, Noll, Vo: draft-eastlake-fnv).
 std::uint64_t block_identity(std::span<const std::string> input_names,
                              std::span<const std::string> target_names, const TermSet& term_set);
 

@@ -350,6 +350,18 @@ CLI::Option* add_demo(CLI::App& command, LiveArguments& options) {
   return demo;
 }
 
+void add_outputs(CLI::App* command, LiveArguments& options) {
+  add_folder(command, "--record", options.record,
+             "folder for a recording of all that comes (MCAP), over live.record");
+  add_file(command, "--block", options.block,
+           "block of `kelpie export --live` to renew with every learned row, over live.block");
+  command->add_option("--plotjuggler", options.plotjuggler,
+                      "port of PlotJuggler's UDP server on this machine, or host:port");
+  command->add_option("--page", options.page,
+                      "port of a page to look at and press buttons on, on this machine, or "
+                      "host:port (docs/howto/live.md), over live.page");
+}
+
 }  // namespace
 
 void add_live(CLI::App& app) {
@@ -400,15 +412,7 @@ void add_live(CLI::App& app) {
   command
       ->add_flag("--resume", options->resume, "learn again, where learning was frozen (as SIGUSR2)")
       ->excludes(freeze);
-  add_folder(command, "--record", options->record,
-             "folder for a recording of all that comes (MCAP), over live.record");
-  add_file(command, "--block", options->block,
-           "block of `kelpie export --live` to renew with every learned row, over live.block");
-  command->add_option("--plotjuggler", options->plotjuggler,
-                      "port of PlotJuggler's UDP server on this machine, or host:port");
-  command->add_option("--page", options->page,
-                      "port of a page to look at and press buttons on, on this machine, or "
-                      "host:port (docs/howto/live.md), over live.page");
+  add_outputs(command, *options);
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");
   add_examples(command, "live --config examples/bluerov.toml --page 8080",

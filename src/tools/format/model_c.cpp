@@ -28,11 +28,11 @@ void check(const TrainedModel& model, const CodeOptions& options) {
                          "' can't begin names in C: letters, digits and underscores, first a "
                          "letter, as in kelpie_model");
   }
-  if (options.casadi && options.single) {
-    throw InputError("--casadi", "calls with double; it doesn't go with --float");
-  }
   if (options.live && options.single) {
     throw InputError("--live", "renews doubles; it doesn't go with --float");
+  }
+  if (options.casadi && options.single) {
+    throw InputError("--casadi", "calls with double; it doesn't go with --float");
   }
   std::vector<std::string> columns = model.input_names;
   for (const TrainedModel::Axis& axis : model.axes) {
