@@ -34,5 +34,13 @@ def plain_docstring(app, what, name, obj, options, lines):
     lines[:] = "".join(parts).split("\n")
 
 
+def without_frameworks(app):
+    """Neither Sphinx 5 nor Furo uses jQuery and underscore, which Sphinx 5 puts on every page."""
+    unused = ("jquery", "underscore", "_sphinx_javascript_frameworks_compat")
+    scripts = app.builder.script_files
+    scripts[:] = [script for script in scripts if not any(name in script for name in unused)]
+
+
 def setup(app):
     app.connect("autodoc-process-docstring", plain_docstring, priority=1)
+    app.connect("builder-inited", without_frameworks, priority=900)
