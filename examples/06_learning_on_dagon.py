@@ -117,7 +117,7 @@ def draw_accuracy(axes: plt.Axes) -> None:
         axes.plot(look_t, look_r2[:, i], color=color, ls=style, label=name)
     axes.set(xlabel="time [s]", ylabel="R² on held-out rows [–]",
              ylim=(min(0.0, look_r2[3:].min()), 1.0),
-             title=f"{held_out.sum()} rows that nobody learned from")
+             title=f"{held_out.sum()} held-out rows")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncol=3, frameon=False)
 
 
