@@ -48,10 +48,13 @@ def test_the_table_has_the_figures_that_run_sh_wrote(command, split, tmp_path):
     result = json.loads(written.read_text(encoding="utf-8"))
     if result["dataset"]["rows"] != 11567:
         pytest.skip("./run.sh learned another log")
-    assert [f"{axis['r2']['final']:.3f}" for axis in result["axes"]] == figures(SPLITS[split])
+    # Another processor's vector instructions may round the last digit otherwise.
+    ours = [axis["r2"]["final"] for axis in result["axes"]]
+    assert ours == pytest.approx([float(r2) for r2 in figures(SPLITS[split])], abs=0.0015)
     if split == "blocks":
         least_squares = [axis["yardsticks"]["least_squares"] for axis in result["axes"]]
-        assert [f"{axis['r2_final']:.3f}" for axis in least_squares] == figures("… recursive")
+        theirs = [axis["r2_final"] for axis in least_squares]
+        assert theirs == pytest.approx([float(r2) for r2 in figures("… recursive")], abs=0.0015)
 
 
 def test_the_lines_of_python_print_what_the_page_shows(command, tmp_path):
