@@ -43,7 +43,7 @@ class SharedModel {
   void update(std::span<const double> x, std::span<const double> y, double t);
   void learn_held_back();  ///< DynamicsModel::learn_held_back(), likewise.
   /// From now on every publication also renews `block`: memory that a library of `kelpie export
-  /// --live` reads, in this process or another (docs/howto/controller.md#swapped-in-place). `inputs` and
+  /// --live` reads, in this process or another (docs/howto/controller.md). `inputs` and
   /// `targets` are the names of the model's columns, `alignment` that of the commands. Another call
   /// replaces block and alignment; an empty block ends the service. The writer never waits; a
   /// renewal costs some 50 µs for three axes and allocates nothing. Requires memory that outlives
