@@ -19,6 +19,7 @@ cd "$work"
 "${CC:-cc}" -std=c99 $sanitizer -c vehicle.c
 "${CXX:-c++}" -std=c++20 $sanitizer -I"$source/include" -I"$source/src/library" \
   -isystem /usr/include/eigen3 -DEigen=kelpie_eigen \
-  "$source/tests/tools/format/block_race/race.cpp" "$source/src/library/model/model_block.cpp" vehicle.o \
+  "$source/tests/tools/format/block_race/race.cpp" \
+  "$source/src/library/model/model_block.cpp" vehicle.o \
   -Wl,--allow-multiple-definition "$build/src/library/libkelpie.a" -lhwy -lm -o race
 ./race "$model" vehicle.block "${3:-60}" "${4:-100}"
