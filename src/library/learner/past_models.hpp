@@ -27,8 +27,8 @@ namespace kelpie {
 ///     any state                                   → settling  a challenger took over
 ///                                                 → on_trial  alert of another axis
 ///
-/// A trial begins with the latest samples, from the start of grown errors. reference/architecture.md has
-/// the states together with the other mechanisms.
+/// A trial begins with the latest samples, from the start of grown errors.
+/// reference/architecture.md has the states together with the other mechanisms.
 ///
 /// The model in service is due for a copy 192 samples after the last of these events and then every
 /// 64 samples. The copy replaces the former copy of the same model, or takes a new place. A model

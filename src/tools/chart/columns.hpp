@@ -8,9 +8,9 @@
 
 namespace kelpie::chart {
 
-/// Compact columns of numbers for figure.js (src/tools/chart/README.md): each value is rounded to one of
-/// 65,535 steps (`fine`: 2³² − 1) between least and greatest of the column, and the differences are
-/// compressed. Values that aren't finite are kept.
+/// Compact columns of numbers for figure.js (src/tools/chart/README.md): each value is rounded to
+/// one of 65,535 steps (`fine`: 2³² − 1) between least and greatest of the column, and the
+/// differences are compressed. Values that aren't finite are kept.
 class Columns {
  public:
   /// The index of the column. Equal columns are stored once.

@@ -39,8 +39,8 @@ struct PlotAxis {
 };
 
 /// An interactive figure, drawn by figure.js from a description and columns of numbers
-/// (src/tools/chart/README.md). Series differ in colour, dash pattern and marker, chosen by `style` ≥ 0.
-/// Without JavaScript a sentence with the range of each series replaces the figure; a figure
+/// (src/tools/chart/README.md). Series differ in colour, dash pattern and marker, chosen by `style`
+/// ≥ 0. Without JavaScript a sentence with the range of each series replaces the figure; a figure
 /// without data says "no data".
 class Figure {
  public:
