@@ -17,12 +17,21 @@ Json actuators_json(const Alignment& alignment) {
   return list;
 }
 
+Json current_json(const Current& current) {
+  return current.none() ? Json(nullptr)
+                        : Json{{"heading", current.heading},   {"unit_rad", current.unit},
+                               {"surge", current.surge},       {"sway", current.sway},
+                               {"yaw_rate", current.yaw_rate}, {"targets", current.targets},
+                               {"times_s", current.times_s},   {"velocity_m_s", current.velocity}};
+}
+
 Json alignment_json(const Alignment& alignment) {
   return alignment.none() ? Json(nullptr)
                           : Json{{"shift_s", alignment.lag_s},
                                  {"rows", alignment.rows},
                                  {"commands", alignment.commands},
-                                 {"actuators", actuators_json(alignment)}};
+                                 {"actuators", actuators_json(alignment)},
+                                 {"current", current_json(alignment.water)}};
 }
 
 }  // namespace kelpie::format
