@@ -253,7 +253,7 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
                   .actuators = actuators_from(alignment[3].cast<std::vector<py::dict>>())};
   if (alignment.size() > 4) {  // states of older versions know of no current
     const file::Json json = file::parse_json(alignment[4].cast<std::string>(), kStateName);
-    known = read_alignment(JsonNode(json, kStateName, ""), inputs, targets.size());
+    known.water = read_alignment(JsonNode(json, kStateName, ""), inputs, targets.size()).water;
   }
   return std::unique_ptr<LiveModel>(new LiveModel(
       inputs, targets, settings,

@@ -282,7 +282,9 @@ Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& i
   if (node.json().contains("current")) {  // older files know of no current
     alignment.water = read_current(node["current"], inputs, targets);
   }
-  alignment.commands = node["commands"].names(inputs.size());
+  if (alignment.water.none() || !node["commands"].items().empty()) {
+    alignment.commands = node["commands"].names(inputs.size());
+  }
   node["commands"].require(
       std::ranges::all_of(
           alignment.commands,

@@ -92,6 +92,12 @@ TEST_F(CurrentOfALog, OfAnotherLogHasToBeGiven) {
                           "psi");
 }
 
+TEST_F(CurrentOfALog, GoesWithoutAnAlignmentOfCommands) {
+  learn("--align none", "out");
+  EXPECT_FALSE(json("out/model.json")["alignment"]["current"].is_null());
+  testing::succeeded(run("predict log.csv --model out/model.json"));
+}
+
 TEST_F(CurrentOfALog, AHeadingAmongTheInputsLeavesThemWithTheCurrent) {
   learn("--inputs u,v,r,n,m,psi --targets udot,vdot,rdot", "named");
   learn("", "out");
