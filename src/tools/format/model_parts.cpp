@@ -26,12 +26,17 @@ Json current_json(const Current& current) {
 }
 
 Json alignment_json(const Alignment& alignment) {
-  return alignment.none() ? Json(nullptr)
-                          : Json{{"shift_s", alignment.lag_s},
-                                 {"rows", alignment.rows},
-                                 {"commands", alignment.commands},
-                                 {"actuators", actuators_json(alignment)},
-                                 {"current", current_json(alignment.water)}};
+  if (alignment.none()) {
+    return nullptr;
+  }
+  Json json{{"shift_s", alignment.lag_s},
+            {"rows", alignment.rows},
+            {"commands", alignment.commands},
+            {"actuators", actuators_json(alignment)}};
+  if (!alignment.water.none()) {
+    json["current"] = current_json(alignment.water);
+  }
+  return json;
 }
 
 }  // namespace kelpie::format
