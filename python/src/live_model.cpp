@@ -8,11 +8,14 @@
 #include <mutex>
 #include <utility>
 
+#include "file/json.hpp"
 #include "format/checkpoint_file.hpp"
+#include "format/model_parts.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "model/dynamics_axis.hpp"
+#include "model/model_json.hpp"
 
 namespace kelpie::python {
 namespace {
@@ -229,7 +232,8 @@ py::tuple LiveModel::state() const {
     state = format::checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
   }
   const py::tuple alignment =
-      py::make_tuple(alignment_.lag_s, alignment_.rows, alignment_.commands, actuators());
+      py::make_tuple(alignment_.lag_s, alignment_.rows, alignment_.commands, actuators(),
+                     file::json_text(format::alignment_json(alignment_)));
   return py::make_tuple(inputs_, targets_, settings_, samples, alignment, py::bytes(state));
 }
 
@@ -243,15 +247,19 @@ std::unique_ptr<LiveModel> LiveModel::resume(const py::tuple& state) {
   const format::Checkpoint found =
       format::parse_checkpoint(state[5].cast<std::string>(), kStateName);
   const auto alignment = state[4].cast<py::tuple>();
+  Alignment known{.lag_s = alignment[0].cast<double>(),
+                  .rows = alignment[1].cast<int>(),
+                  .commands = alignment[2].cast<std::vector<std::string>>(),
+                  .actuators = actuators_from(alignment[3].cast<std::vector<py::dict>>())};
+  if (alignment.size() > 4) {  // states of older versions know of no current
+    const file::Json json = file::parse_json(alignment[4].cast<std::string>(), kStateName);
+    known.water = read_alignment(JsonNode(json, kStateName, ""), inputs, targets.size()).water;
+  }
   return std::unique_ptr<LiveModel>(new LiveModel(
       inputs, targets, settings,
       DynamicsModel::resume(DynamicsModel(inputs, targets, settings_from(settings, targets.size())),
                             found.state),
-      state[3].cast<std::int64_t>(),
-      {.lag_s = alignment[0].cast<double>(),
-       .rows = alignment[1].cast<int>(),
-       .commands = alignment[2].cast<std::vector<std::string>>(),
-       .actuators = actuators_from(alignment[3].cast<std::vector<py::dict>>())}));
+      state[3].cast<std::int64_t>(), std::move(known)));
 }
 
 std::unique_ptr<LiveModel> LiveModel::resume_from(const TrainedModel& trained, double start_s) {

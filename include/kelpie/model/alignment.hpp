@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "kelpie/model/current.hpp"
+
 namespace kelpie {
 
 /// What a rotor, shaft, rudder or fin makes of its command c, in the unit of the command:
@@ -75,8 +77,8 @@ class ActuatorState {
   double value_ = 0.0;
 };
 
-/// What stands between the commands of a log and the accelerations: a shift of all commands in
-/// time, and an actuator per command. With a lag of 0.5 s, the acceleration of a row belongs to the
+/// What stands between the rows of a log and a model: a shift of all commands in time, an actuator
+/// per command, and the current. With a lag of 0.5 s, the acceleration of a row belongs to the
 /// commands of the row 0.5 s later: commands were logged late, or accelerations early (filters).
 /// With a lag below 0, the acceleration belongs to earlier commands.
 struct Alignment {
@@ -86,6 +88,7 @@ struct Alignment {
   int rows = 0;                         ///< the lag in rows of the log of the search
   std::vector<std::string> commands{};  ///< aligned inputs: all but velocities
   std::vector<Actuator> actuators{};    ///< one per command; empty: all act at once
+  Current water{};                      ///< of the log; the model sees velocities through the water
 
   /// An alignment of `inputs` at these places by a given lag, in whole rows of a log. Allocates.
   static Alignment by(double lag_s, std::span<const std::string> inputs,
@@ -100,7 +103,7 @@ struct Alignment {
   double command_for(std::string_view input, double effect) const;
 
   bool shifts() const { return rows != 0; }
-  bool none() const { return !shifts() && actuators.empty(); }
+  bool none() const { return !shifts() && actuators.empty() && water.none(); }
   double rate_hz() const { return rows / lag_s; }  ///< Of the log of the search. Requires shifts().
   int rows_at(double rate_hz) const;               ///< The lag in rows of another log.
   Alignment at(double rate_hz) const;              ///< The alignment in whole rows of another log.

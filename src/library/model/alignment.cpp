@@ -178,12 +178,16 @@ std::string Alignment::text(double rate_hz) const {
       text += (text.empty() ? "" : "; ") + names + ": " + properties(actuators[k], count > 1);
     }
   }
+  if (!water.none()) {
+    text += (text.empty() ? "" : "; ") + std::string("velocities are through the water: ") +
+            water.text();
+  }
   return text;
 }
 
 Alignment Alignment::at(double rate_hz) const {
   const int rows_there = rows_at(rate_hz);
-  return {rows_there == 0 ? 0.0 : rows_there / rate_hz, rows_there, commands, actuators};
+  return {rows_there == 0 ? 0.0 : rows_there / rate_hz, rows_there, commands, actuators, water};
 }
 
 AlignedRows::AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs,

@@ -73,7 +73,9 @@ AlignmentRows::AlignmentRows(const AlignmentProblem& problem)
     largest[i] = tidy.largest;
   }
   for (std::size_t i = 0; i < problem.target_count; ++i) {
-    targets.push_back(tidy_column(problem.targets, i, problem.target_count, rows_).values);
+    TidyColumn tidy = tidy_column(problem.targets, i, problem.target_count, rows_);
+    targets.push_back(std::move(tidy.values));
+    largest_target.push_back(tidy.largest);
   }
   first_.resize(size());
   last_.resize(size());

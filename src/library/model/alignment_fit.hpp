@@ -35,6 +35,7 @@ class AlignmentRows {
   std::vector<std::vector<double>> inputs;   ///< [input][row in use]
   std::vector<std::vector<double>> targets;  ///< [target][row in use]
   std::vector<double> largest;               ///< [input], in the unit of the log
+  std::vector<double> largest_target;        ///< [target], in the unit of the log
 
  private:
   std::span<const std::size_t> rows_;

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "core/text.hpp"
+#include "model/fold_evidence.hpp"
 #include "model/tuning.hpp"
 #include "motion/signal_names.hpp"
 
@@ -15,26 +17,6 @@ namespace kelpie {
 namespace {
 
 constexpr const auto& kSearch = kModelTuning.alignment;
-
-// What the folds say of a gain: their mean and its standard error, over the targets together.
-struct Evidence {
-  double mean = 0.0;
-  double error = 0.0;
-  double share = 0.0;
-
-  explicit Evidence(const Eigen::ArrayXXd& gains) {
-    const Eigen::ArrayXd folds = gains.rowwise().mean();
-    const auto count = static_cast<double>(folds.size());
-    mean = folds.mean();
-    error = std::sqrt((folds - mean).square().sum() / (count - 1.0) / count);
-    share = (folds > 0.0).cast<double>().mean();
-  }
-
-  bool is_clear() const {
-    return mean >= kSearch.least_gain && mean >= kSearch.clear * error &&
-           share >= kSearch.gaining_share;
-  }
-};
 
 template <typename Change>
 AlignmentGuess with_each(AlignmentGuess guess, const Change& change) {
@@ -52,10 +34,6 @@ AlignmentGuess guess_of(const Alignment& alignment, std::size_t commands) {
   AlignmentGuess guess{.shift = alignment.rows, .actuators = alignment.actuators};
   guess.actuators.resize(commands);
   return guess;
-}
-
-std::string percent(double share) {
-  return short_number(std::round(1000.0 * share) / 10.0) + " %";
 }
 
 // Value at rest of a command that never changes its sign: servo pulses [µs], percent, shares.
@@ -117,13 +95,10 @@ AlignmentSearch::Scored AlignmentSearch::step(Scored from, const Guesses& guesse
       tried.push_back(scored(guess));
     }
   }
-  const auto best =
-      std::ranges::min_element(tried, {}, [](const Scored& guess) { return guess.errors.mean(); });
-  const auto chosen = std::find_if(tried.begin(), best, [&](const Scored& simpler) {
-    const Evidence lost(simpler.errors - best->errors);
-    return lost.mean <= lost.error;
-  });
-  return Evidence(from.errors - chosen->errors).is_clear() ? *chosen : from;
+  std::vector<Eigen::ArrayXXd> errors;
+  std::ranges::transform(tried, std::back_inserter(errors), &Scored::errors);
+  const Scored& chosen = tried[simplest_of_best(errors)];
+  return FoldEvidence(from.errors - chosen.errors).is_clear() ? chosen : from;
 }
 
 // The best guess; for numbers of which one is no simpler than the other.
@@ -262,12 +237,11 @@ void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& b
   const bool none = present.guess == known_;
   const std::string against = none ? "without" : "with the one before";
   const auto evidence = [&](const Scored& other) {
-    return percent(1.0 - std::exp(-Evidence(present.errors - other.errors).mean)) +
-           " of what is unexplained " + against + ", on " + std::to_string(AlignmentFit::kFolds) +
-           " folds of the training rows";
+    return FoldEvidence(present.errors - other.errors).percent() + " of what is unexplained " +
+           against + ", on " + std::to_string(AlignmentFit::kFolds) + " folds of the training rows";
   };
   for (const Scored& other : better) {
-    const Evidence gain(present.errors - other.errors);
+    const FoldEvidence gain(present.errors - other.errors);
     if (other.guess != present.guess && gain.is_clear() && kernel_agrees(present, other)) {
       found.alignment.rows = other.guess.shift;
       found.alignment.lag_s = other.guess.shift / rate_hz_;
@@ -275,7 +249,7 @@ void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& b
       if (std::ranges::all_of(other.guess.actuators, &Actuator::none)) {
         found.alignment.actuators.clear();
       }
-      found.gain = 1.0 - std::exp(-gain.mean);
+      found.gain = gain.explained();
       found.why = "this explains " + evidence(other);
       return;
     }

@@ -2,6 +2,7 @@
 #include "model/model_json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -28,11 +29,57 @@ void read_shift(const JsonNode& node, Alignment& alignment) {
   const double rows = node["rows"].number();
   node["rows"].require(rows == std::trunc(rows) && std::abs(rows) <= kMostShiftedRows,
                        "has to be a whole number of rows");
-  const bool nothing = alignment.lag_s == 0.0 && rows == 0.0 && !alignment.actuators.empty();
+  const bool nothing = alignment.lag_s == 0.0 && rows == 0.0 &&
+                       (!alignment.actuators.empty() || !alignment.water.none());
   node["shift_s"].require(
       nothing || (std::abs(alignment.lag_s) <= Alignment::kMostS && alignment.lag_s * rows > 0.0),
-      "has to be seconds with the sign of 'rows', neither of them 0 unless there are actuators");
+      "has to be seconds with the sign of 'rows', neither of them 0 unless there are actuators or "
+      "a current");
   alignment.rows = static_cast<int>(rows);
+}
+
+// Velocities of the current, two per time.
+std::vector<std::array<double, 2>> read_velocities(const JsonNode& node) {
+  std::vector<std::array<double, 2>> velocities;
+  for (const JsonNode& entry : node.items()) {
+    const std::vector<double> both = entry.numbers(2);
+    velocities.push_back({both[0], both[1]});
+  }
+  return velocities;
+}
+
+Current read_current(const JsonNode& node, const std::vector<std::string>& inputs,
+                     std::size_t targets) {
+  Current current;
+  if (node.json().is_null()) {
+    return current;
+  }
+  current.heading = node["heading"].text();
+  current.unit = node["unit_rad"].number();
+  for (const auto& [key, name] : {std::pair{"surge", &current.surge},
+                                  {"sway", &current.sway},
+                                  {"yaw_rate", &current.yaw_rate}}) {
+    *name = node[key].text();
+    node[key].require(std::ranges::find(inputs, *name) != inputs.end(), "has to be an input");
+  }
+  const std::vector<double> places = node["targets"].numbers(2);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    node["targets"].require(places[i] >= 0.0 && places[i] < static_cast<double>(targets) &&
+                                places[i] == std::trunc(places[i]),
+                            "has to hold places of targets, from 0");
+    current.targets[i] = static_cast<std::size_t>(places[i]);
+  }
+  for (const JsonNode& time : node["times_s"].items()) {
+    current.times_s.push_back(time.number());
+  }
+  current.velocity = read_velocities(node["velocity_m_s"]);
+  node["times_s"].require(!current.none(), "has to hold a time");
+  try {
+    current.validate();
+  } catch (const InputError& error) {
+    node.require(false, error.what());
+  }
+  return current;
 }
 
 Actuator read_actuator(const JsonNode& node) {
@@ -226,12 +273,18 @@ void read_steady_parts(const std::vector<JsonNode>& axes, TrainedModel& model) {
 
 }  // namespace
 
-Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& inputs) {
+Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& inputs,
+                         std::size_t targets) {
   Alignment alignment;
   if (node.json().is_null()) {
     return alignment;
   }
-  alignment.commands = node["commands"].names(inputs.size());
+  if (node.json().contains("current")) {  // older files know of no current
+    alignment.water = read_current(node["current"], inputs, targets);
+  }
+  if (alignment.water.none() || !node["commands"].items().empty()) {
+    alignment.commands = node["commands"].names(inputs.size());
+  }
   node["commands"].require(
       std::ranges::all_of(
           alignment.commands,
@@ -294,7 +347,7 @@ TrainedModel trained_model(const Json& document, const std::string& source) {
   }
   read_steady_parts(axes, model);
   if (root.json().contains("alignment")) {
-    model.alignment = read_alignment(root["alignment"], model.input_names);
+    model.alignment = read_alignment(root["alignment"], model.input_names, axes.size());
   }
   return model;
 }

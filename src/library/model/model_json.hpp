@@ -21,7 +21,8 @@ inline constexpr int kModelVersion = 5;                      ///< `version` as w
 TrainedModel trained_model(const Json& document, const std::string& source);
 
 /// The alignment of a model with these inputs.
-Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& inputs);
+Alignment read_alignment(const JsonNode& node, const std::vector<std::string>& inputs,
+                         std::size_t targets);
 
 /// Reads an object of ModelSettings::values(); removed settings are skipped.
 ModelSettings read_settings(const JsonNode& node, std::size_t axes);

@@ -35,6 +35,25 @@ inline constexpr struct ModelTuning {
     double kernel_ridge = 0.01;             ///< of a unit kernel; by hand
   } alignment;
 
+  /// Search of the current (model/current.hpp).
+  struct Water {
+    std::size_t most_fitted_rows = 3'000;  ///< rows per fit, for the cost; by hand
+    std::size_t blocks_per_fold = 5;  ///< spread over the log, since a current wanders; by hand
+    double least_between_s = 60.0;    ///< s between two times of a current; by hand
+    std::size_t most_knots = 33;      ///< times of a current, for the cost; by hand
+    int most_steps = 12;              ///< of a fit; by hand
+    int halvings = 5;                 ///< of a step that does not improve; by hand
+    double settled = 1e-4;            ///< of the sum of squares: a smaller step ends a fit
+    double smooth = 0.01;             ///< weight of a difference between two times, against
+                                      ///< the rows between the two; by hand
+    double still = 1e-4;              ///< weight of still water, the same; by hand
+    double difference_m_s = 1e-3;     ///< m/s, of slopes; by hand
+    double turn_s = 2.0;              ///< s of a turn, compared with the yaw rate; by hand
+    double least_turn_rad = 0.5;      ///< rad, root mean square · √turns, told by; by hand
+    double unit_tolerance = 0.15;     ///< of the unit of a heading; by hand
+    double most_rate = 6.3;           ///< rad/s: a faster yaw rate is in degrees
+  } water;
+
   /// Intervals of lags (lag_intervals in model/alignment.hpp).
   struct LagProfile {
     double factor = 1.189207115002721;  ///< between lags tried: four per octave; by hand

@@ -36,6 +36,7 @@ struct ColumnsInUse {
   std::optional<std::size_t> configuration;
   std::optional<std::size_t> held_out;
   std::vector<std::size_t> used;  // all of these
+  std::optional<std::size_t> heading;
 };
 
 // A column that would be the time if it could be read.
@@ -108,6 +109,11 @@ ColumnsInUse find_columns(const Table& table, const Roles& roles) {
   }
   if (!roles.held_out.empty()) {
     columns.held_out = use_column(table, roles.held_out, columns);
+  }
+  const std::string heading = roles.heading.empty() ? find_heading(table) : roles.heading;
+  if (!heading.empty()) {
+    columns.heading = table.find(heading);
+    table.require_numbers(*columns.heading);
   }
   return columns;
 }
@@ -190,7 +196,11 @@ void copy_rows(const Table& table, const ColumnsInUse& columns, double rate_hz, 
     if (columns.held_out) {
       data.held_out.push_back(held_out_at(table, *columns.held_out, row));
     }
+    if (columns.heading) {
+      data.headings.push_back(cell(*columns.heading));
+    }
   }
+  data.heading_column = columns.heading ? table.names[*columns.heading] : "";
 }
 
 void check_rows_left(const Table& table, const Dataset& data) {

@@ -102,6 +102,8 @@ struct Dataset {
   std::vector<double> times_s;        ///< seconds, never decreasing
   std::vector<int> configurations;    ///< number of the vehicle's configuration, 0 where not told
   std::vector<bool> held_out;         ///< marks of held-out rows; empty: not marked
+  std::string heading_column{};       ///< empty: none
+  std::vector<double> headings{};     ///< of each row, as the log has them, perhaps NaN; or empty
   std::size_t rows_read = 0;          ///< rows of the log, including skipped rows
   std::size_t rows_skipped = 0;       ///< rows left out: a NaN or infinity in a column in use
   std::string time_column{};          ///< empty: rows at a rate
@@ -128,6 +130,7 @@ struct Roles {
   double rate_hz = 0.0;         ///< rows per second without time column; 0: not given
   std::string configuration{};  ///< name of a column numbering the configuration, or empty
   std::string held_out{};       ///< name of a column of 0 and 1 (held out for validation), or empty
+  std::string heading{};        ///< column of the vehicle's heading; empty: by name (find_heading)
   std::vector<std::string> also{};     ///< columns that are inputs, whatever a guess says
   std::vector<std::string> ignored{};  ///< columns that no guess takes for inputs or targets
   /// Units of columns, in the syntax of Unit::parse. Readers convert columns to the SI
@@ -157,6 +160,10 @@ inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"
 /// velocities (velocity_axis()) first. Roles in `given` are kept. Throws InputError on an ignored
 /// column that is missing or has a role, no target, no input, or more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
+
+/// The column of the vehicle's heading for the estimate of a current: psi, yaw, heading, hdg or
+/// compass, also with _deg or _rad, the first with a number; empty: none. A course is no heading.
+std::string find_heading(const Table& table);
 
 /// Leaves constant columns out of the inputs that `roles` name, unless all are constant: constants
 /// tell a learner nothing.

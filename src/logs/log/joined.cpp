@@ -65,11 +65,16 @@ Dataset rows_since(const Dataset& data, double since_s) {
   drop(rest.times_s, 1);
   drop(rest.configurations, 1);
   drop(rest.held_out, 1);
+  drop(rest.headings, 1);
   return rest;
 }
 
 Dataset joined(std::vector<Dataset> logs) {
   Dataset all = std::move(logs.front());
+  if (logs.size() > 1) {  // each log has a current of its own
+    all.heading_column.clear();
+    all.headings.clear();
+  }
   for (const Dataset& next : std::span(logs).subspan(1)) {
     require_alike(all, next);
     const double end = all.times_s.back();

@@ -34,6 +34,9 @@ constexpr std::array<std::string_view, 12> kLabels{"held",      "held_out", "fol
 // Of the angles heading alone is without effect: roll and pitch restore.
 constexpr std::array<std::string_view, 8> kHeadings{"heading", "psi",    "yaw",     "hdg",
                                                     "cog",     "course", "yaw_deg", "compass"};
+constexpr std::array<std::string_view, 5> kHeadingOfVehicle{"psi", "yaw", "heading", "hdg",
+                                                            "compass"};
+constexpr std::array<std::string_view, 3> kAngleEndings{"", "_deg", "_rad"};
 constexpr std::array<std::string_view, 4> kBatteryWords{"battery", "batt", "soc", "vbat"};
 constexpr std::array<std::string_view, 6> kBatteries{"volt",      "volts",     "voltage",
                                                      "voltage_v", "current_a", "amps"};
@@ -264,6 +267,19 @@ Roles guess_roles(const Table& table, const Roles& given) {
     }
   }
   return roles;
+}
+
+std::string find_heading(const Table& table) {
+  for (const std::string_view name : kHeadingOfVehicle) {
+    for (const std::string_view ending : kAngleEndings) {
+      const auto found = std::ranges::find(table.names, std::string(name) + std::string(ending));
+      const auto column = static_cast<std::size_t>(found - table.names.begin());
+      if (found != table.names.end() && !table.has_text(column)) {
+        return *found;
+      }
+    }
+  }
+  return "";
 }
 
 Roles without_constants(const Table& table, Roles roles) {

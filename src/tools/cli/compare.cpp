@@ -132,6 +132,7 @@ void add_compare(CLI::App& app) {
   add_split_option(*command, options->split, "held-out rows, the same for all (see `learn`)");
   add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
+  add_current_option(*command, options->current);
   add_accept_option(*command, options->accept);
   add_file(command, "--config", options->config, "TOML file with settings of kelpie");
   add_set(command, options->set);

@@ -354,6 +354,7 @@ void add_learn(CLI::App& app) {
       ->type_name("{first,train,FILE}");
   add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
+  add_current_option(*command, options->current);
   add_accept_option(*command, options->accept);
   command->add_option("--validate-every", options->validate_every,
                       "training samples between two validations; 0: 200 in all");

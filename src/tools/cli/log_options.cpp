@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "log/plausibility.hpp"
 #include "report/sampling_table.hpp"
 #include "study/alignment.hpp"
+#include "study/current.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -202,6 +205,7 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
   roles.held_out = split.column;
   if (from != nullptr) {
     take_columns(*from, roles);
+    roles.heading = from->alignment().water.heading;
   }
   PlannedLog log{.plan = {},
                  .learned = {},
@@ -216,12 +220,19 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
         tell_mistakes(data.source, "targets", log::target_mistakes(data, settings.shared.states),
                       !options.accept.empty());
   }
+  const format::LearnedLog without_heading =
+      format::learned_log(study::without_input(data, data.heading_column));
   std::optional<AlignmentResult> known;
   if (from != nullptr && options.align == kAlignAuto) {
     known = study::alignment_at(from->alignment(), data.rate_hz, from->file());
   }
+  // A model of velocities over ground goes on with velocities over ground.
+  const bool over_ground = from != nullptr && from->alignment().water.none();
   log.plan = study::plan_learning(std::move(data), split, std::move(settings), options.align, known,
-                                  options.with_lags);
+                                  options.with_lags, over_ground ? "none" : options.current);
+  if (!log.plan.current.current.none()) {  // whose model has no heading
+    log.learned = {without_heading};
+  }
   log.plan.from = from != nullptr ? from->file() : "";
   log.learned = format::with_held_out(std::move(log.learned), log.plan.split.held_out);
   return log;
@@ -241,6 +252,56 @@ void add_align_option(CLI::App& command, std::string& align) {
                   "training rows), none, or seconds")
       ->capture_default_str()
       ->type_name("{auto,none,SECONDS}");
+}
+
+void add_current_option(CLI::App& command, std::string& current) {
+  current = "auto";
+  command
+      .add_option("--current", current,
+                  "current of the water: auto (found on the training rows of a log with a heading, "
+                  "and taken off the velocities), or none")
+      ->check(CLI::IsMember({"auto", "none"}))
+      ->capture_default_str();
+}
+
+void add_known_current_option(CLI::App& command, std::string& current) {
+  current = "learned";
+  command
+      .add_option("--current", current,
+                  "current of the log, for a model of velocities through the water: learned (as "
+                  "found in this log when the model learned the log), none, or two speeds [m/s] as "
+                  "in 0.2,-0.1: along heading 0 and along a quarter turn")
+      ->type_name("{learned,none,C1,C2}")
+      ->capture_default_str();
+}
+
+void settle_current(const std::string& wish, bool is_learned, const std::string& log,
+                    TrainedModel& model) {
+  Current& water = model.alignment.water;
+  if (water.none() || wish == "none") {
+    water.times_s.clear();
+    water.velocity.clear();
+    return;
+  }
+  if (wish == "learned") {
+    if (!is_learned) {
+      throw InputError(
+          {.file = log, .line = 0, .field = "--current"},
+          "is not known: the model is of velocities through the water, and did not "
+          "learn this log with rows held out. Give --current none (velocities through "
+          "the water), or --current C1,C2 in m/s; `kelpie learn` of this log estimates "
+          "the current");
+    }
+    return;
+  }
+  const std::vector<std::string> parts = split_text(wish, ',');
+  std::array<double, 2> speeds{};
+  require(parts.size() == 2 && parse_number(parts[0], speeds[0]) &&
+              parse_number(parts[1], speeds[1]) && std::isfinite(speeds[0]) &&
+              std::isfinite(speeds[1]),
+          "--current", "'" + wish + "' is neither learned nor none nor two speeds, as in 0.2,-0.1");
+  water.times_s = {0.0};
+  water.velocity = {speeds};
 }
 
 void add_accept_option(CLI::App& command, std::vector<std::string>& accept) {

@@ -54,6 +54,7 @@ struct PlanOptions {
   std::optional<double> since_s{};  ///< --since: earlier rows are left out
   std::string split = "auto";
   std::string align = "auto";
+  std::string current = "none";
   bool with_lags = false;             ///< LearnPlan::lags
   bool check_targets = true;          ///< log::target_mistakes()
   std::vector<std::string> accept{};  ///< --accept
@@ -93,6 +94,18 @@ void add_since_option(CLI::App& command, std::optional<double>& since_s);
 
 /// The option --align of commands (study::choose_alignment).
 void add_align_option(CLI::App& command, std::string& align);
+
+/// The option --current of commands that learn: auto or none.
+void add_current_option(CLI::App& command, std::string& current);
+
+/// The option --current of commands that take a model: learned, none, or two speeds.
+void add_known_current_option(CLI::App& command, std::string& current);
+
+/// Settles the current of a log for a model of velocities through the water, by the option
+/// --current; without effect on other models. `is_learned`: the model learned this log. Throws
+/// InputError (--current) on other text, and on a learned current for another log.
+void settle_current(const std::string& wish, bool is_learned, const std::string& log,
+                    TrainedModel& model);
 
 /// The option --accept of what is refused otherwise: "implausible".
 void add_accept_option(CLI::App& command, std::vector<std::string>& accept);

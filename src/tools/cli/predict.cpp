@@ -38,6 +38,7 @@ struct PredictArguments {
   double rate_hz = 0.0;
   std::vector<std::string> units;
   bool jacobian = false;
+  std::string current;
 };
 
 // Numbers of the columns that the model sees, in its order.
@@ -83,7 +84,7 @@ struct SeenRows {
 
 // Where neither a column nor the user tells the time, rows come as fast as when the model learned.
 SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log::Roles& roles) {
-  const std::vector<std::size_t> columns = input_columns(model, table);
+  std::vector<std::size_t> columns = input_columns(model, table);
   const bool by_time = !model.alignment.none();
   const std::optional<std::size_t> time = by_time ? time_column(table, roles) : std::nullopt;
   if (!time && roles.rate_hz == 0.0 && !model.alignment.shifts() &&
@@ -98,13 +99,26 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
   SeenRows seen;
   seen.data.source = table.source;
   seen.data.input_names = model.input_names;
+  const Current& water = model.alignment.water;
+  if (!water.none()) {  // with the targets of a vehicle at rest: what a current adds
+    seen.data.target_names = model.target_names();
+    seen.data.heading_column = water.heading;
+    columns.push_back(table.find(water.heading));
+    table.require_numbers(columns.back());
+  }
+  const std::size_t inputs = model.input_names.size();
   std::vector<double> x(columns.size());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::ranges::transform(columns, x.begin(),
                            [&](std::size_t column) { return table.columns[column][row]; });
     const double t = time ? table.columns[*time][row] : static_cast<double>(row) / rate_hz;
     if (std::isfinite(t) && std::ranges::all_of(x, [](double v) { return std::isfinite(v); })) {
-      seen.data.inputs.insert(seen.data.inputs.end(), x.begin(), x.end());
+      seen.data.inputs.insert(seen.data.inputs.end(), x.begin(),
+                              x.begin() + static_cast<std::ptrdiff_t>(inputs));
+      if (!water.none()) {
+        seen.data.headings.push_back(x.back());
+        seen.data.targets.resize(seen.data.targets.size() + model.axes.size());
+      }
       seen.data.times_s.push_back(t);
       seen.places.push_back(row);
     }
@@ -149,6 +163,12 @@ std::vector<NewColumn> new_columns(const TrainedModel& model, const SeenRows& se
   }
   for (std::size_t i = 0; i < seen.places.size(); ++i) {
     model.predict(seen.data.input(i), std::span<Prediction>(said));
+    for (std::size_t axis = 0; axis < seen.data.target_names.size(); ++axis) {  // over ground
+      const double by_current = -seen.data.target(i)[axis];
+      said[axis].value += by_current;
+      said[axis].lower += by_current;
+      said[axis].upper += by_current;
+    }
     if (jacobian) {
       model.predict_with_jacobian(seen.data.input(i), y, slopes);
     }
@@ -255,7 +275,7 @@ void tell_far_inputs(const TrainedModel& model, const SeenRows& seen, const std:
 void predict(const PredictArguments& options) {
   check_output("--out", options.out, {options.source.path, options.model, options.config});
   format::ModelInfo info;
-  const TrainedModel model = read_given_model(options.model, &info);
+  TrainedModel model = read_given_model(options.model, &info);
   const log::LogConfig config = log::read_log_config(options.config);
   log::Roles roles = config.roles;
   roles.inputs = model.input_names;
@@ -271,6 +291,7 @@ void predict(const PredictArguments& options) {
   log::Log log = open_log(options.source, config, roles);
   log::Table& table = log.table;
   const KnownRows known = known_rows(model, table, info.learned);
+  settle_current(options.current, !known.held_out.empty(), options.source.path, model);
   const SeenRows seen = seen_rows(model, table, log.roles);
   tell_far_inputs(model, seen, options.source.path);
   const std::vector<NewColumn> columns = new_columns(model, seen, table.rows(), options.jacobian);
@@ -310,6 +331,7 @@ void add_predict(CLI::App& app) {
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")
       ->capture_default_str()
       ->type_name("FILE");
+  add_known_current_option(*command, options->current);
   command->add_flag("--jacobian", options->jacobian,
                     "also the derivatives of every prediction, as columns d(udot)/d(u)");
   add_examples(command, "predict dive2.csv",

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -19,6 +20,7 @@
 #include "cli/progress.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
+#include "format/learned_logs.hpp"
 #include "format/rollout_json.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
@@ -44,6 +46,7 @@ struct RolloutArguments {
   std::vector<double> horizons{1.0, 5.0, 10.0, 40.0};
   std::string commands = "linear";
   double step_s = RolloutSettings{}.step_s;
+  std::string current;
   std::string out = "out/rollout";
   AnswerOptions answer;
 };
@@ -71,6 +74,9 @@ log::Log read_with_inputs(const RolloutArguments& options, const TrainedModel& m
   wanted.inputs = model.input_names;
   wanted.targets = targets;
   wanted.held_out = held_out;
+  if (!targets.empty() && options.current != "none") {
+    wanted.heading = model.alignment.water.heading;
+  }
   return open_log(options.log.source, config, wanted);
 }
 
@@ -191,10 +197,12 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
 
 void roll_commands(const RolloutArguments& options, const TrainedModel& model,
                    const OpenLoop& loop) {
+  Alignment alignment = model.alignment;
+  alignment.water = {};  // velocities of --start are through the water
   const log::Log log = read_with_inputs(options, model, {}, {});
   const log::Dataset data = study::aligned(
       log::make_commands(log.table, log.roles, start_velocities(options, state_names(model, loop))),
-      model.alignment);
+      alignment);
   say_shift(model, data);
   const file::OutFolder folder = take_folder(options, {"rollout.csv"});
   study::Trajectory path =
@@ -216,10 +224,13 @@ void rollout(const RolloutArguments& options) {
   constexpr std::size_t kMostHorizons = 100;
   require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
   format::ModelInfo info;
-  const TrainedModel model = read_given_model(options.model, &info);
+  TrainedModel model = read_given_model(options.model, &info);
   const OpenLoop loop = open_loop(model);
   if (options.start.empty()) {
-    const log::Dataset data = study::aligned(read_judged_log(options, model), model.alignment);
+    log::Dataset read = read_judged_log(options, model);
+    settle_current(options.current, !format::held_out_rows(info.learned, read).empty(),
+                   options.log.source.path, model);
+    const log::Dataset data = study::aligned(std::move(read), model.alignment);
     say_shift(model, data);
     const file::OutFolder folder =
         take_folder(options, {"result.json", "report.html", "example.csv"});
@@ -250,6 +261,7 @@ void add_rollout(CLI::App& app) {
       ->delimiter(',')
       ->check(within(kShortestS, kDayS))
       ->capture_default_str();
+  add_known_current_option(*command, options->current);
   command
       ->add_option("--commands", options->commands,
                    "between two rows: linear (measured speeds) or held (commands)")

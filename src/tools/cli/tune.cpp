@@ -213,6 +213,7 @@ void add_tune(CLI::App& app) {
   add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
   add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
+  add_current_option(*command, options->current);
   add_accept_option(*command, options->accept);
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in each log");

@@ -287,14 +287,22 @@ class ModelCode {
   // What a caller has to know of the commands; nothing where they weren't shifted.
   std::string shift() const {
     const Alignment& shift = model_.alignment;
+    const Current& water = shift.water;
+    const std::string current =
+        water.none() ? ""
+                     : fmt::format(
+                           " * {} and {} are velocities through the water, and accelerations are "
+                           "against the\n * water: add the current to get over ground.\n",
+                           c_string(water.surge), c_string(water.sway));
     if (!shift.shifts()) {
-      return "";
+      return current;
     }
-    return fmt::format(
-        " * Alignment: a prediction belongs to the commands that the log has {:.4g} s {}.\n"
-        " *   Commands: {}\n",
-        std::abs(shift.lag_s), shift.lag_s > 0.0 ? "later" : "earlier",
-        c_string(join_text(shift.commands, ", ")));
+    return current +
+           fmt::format(
+               " * Alignment: a prediction belongs to the commands that the log has {:.4g} s {}.\n"
+               " *   Commands: {}\n",
+               std::abs(shift.lag_s), shift.lag_s > 0.0 ? "later" : "earlier",
+               c_string(join_text(shift.commands, ", ")));
   }
 
   std::string comment() const {

@@ -17,12 +17,26 @@ Json actuators_json(const Alignment& alignment) {
   return list;
 }
 
+Json current_json(const Current& current) {
+  return current.none() ? Json(nullptr)
+                        : Json{{"heading", current.heading},   {"unit_rad", current.unit},
+                               {"surge", current.surge},       {"sway", current.sway},
+                               {"yaw_rate", current.yaw_rate}, {"targets", current.targets},
+                               {"times_s", current.times_s},   {"velocity_m_s", current.velocity}};
+}
+
 Json alignment_json(const Alignment& alignment) {
-  return alignment.none() ? Json(nullptr)
-                          : Json{{"shift_s", alignment.lag_s},
-                                 {"rows", alignment.rows},
-                                 {"commands", alignment.commands},
-                                 {"actuators", actuators_json(alignment)}};
+  if (alignment.none()) {
+    return nullptr;
+  }
+  Json json{{"shift_s", alignment.lag_s},
+            {"rows", alignment.rows},
+            {"commands", alignment.commands},
+            {"actuators", actuators_json(alignment)}};
+  if (!alignment.water.none()) {
+    json["current"] = current_json(alignment.water);
+  }
+  return json;
 }
 
 }  // namespace kelpie::format

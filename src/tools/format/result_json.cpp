@@ -95,6 +95,13 @@ struct Shown {
     return found.why.empty() ? Json(nullptr)
                              : fields(found, {{"actuators", actuators_json(found.alignment)}});
   }
+  // Null where nobody looked for a current, or the log has no heading.
+  static Json of(const CurrentResult& found) {
+    return found.why.empty() ? Json(nullptr)
+                             : Json{{"current", current_json(found.current)},
+                                    {"gain", number(found.gain)},
+                                    {"why", found.why}};
+  }
   static Json of(const Tally& tally) {
     Json totals;
     for (const TallyField& field : tally_fields()) {

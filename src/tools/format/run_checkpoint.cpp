@@ -128,7 +128,7 @@ SavedModel saved_model(const FoundCheckpoint& found) {
   saved.inputs = root["inputs"].names(kMostInputs);
   saved.targets = root["targets"].names(kMostTargets);
   saved.settings = read_settings(root["settings"], saved.targets.size());
-  saved.alignment = read_alignment(root["alignment"], saved.inputs);
+  saved.alignment = read_alignment(root["alignment"], saved.inputs, saved.targets.size());
   saved.scale_given = root["scale_given"].json() == true;
   return saved;
 }

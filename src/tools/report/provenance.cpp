@@ -17,6 +17,7 @@
 #include "kelpie/motion/term_set.hpp"
 #include "motion/states.hpp"
 #include "study/alignment.hpp"
+#include "study/current.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -83,6 +84,7 @@ std::string data_section(const study::StreamResult& result) {
       {"alignment", result.alignment.why.empty()
                         ? "–"
                         : study::alignment_text(result.alignment, result.rate_hz)},
+      {"current", result.current.why.empty() ? "–" : study::current_text(result.current)},
       {"physics terms", terms_text(result).empty() ? "–" : terms_text(result)},
       {"goes on from", result.from.empty() ? "–" : result.from},
       {"scales from", result.scales},

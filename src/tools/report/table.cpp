@@ -14,6 +14,7 @@
 #include "report/stream_figures.hpp"
 #include "report/stream_tables.hpp"
 #include "study/alignment.hpp"
+#include "study/current.hpp"
 #include "study/diagnosis.hpp"
 #include "study/summary.hpp"
 
@@ -116,6 +117,9 @@ std::string heading_text(const study::StreamResult& result) {
                   chart::grouped(result.samples_shown));
   if (!result.alignment.why.empty()) {
     text += study::alignment_text(result.alignment, result.rate_hz) + "\n";
+  }
+  if (!result.current.why.empty()) {
+    text += "current: " + study::current_text(result.current) + "\n";
   }
   if (const std::string terms = terms_text(result); !terms.empty()) {
     text += terms + "\n";

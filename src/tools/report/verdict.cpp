@@ -92,9 +92,14 @@ std::vector<std::string> input_lines(const study::StreamResult& result) {
     lines.push_back("attitude: " + join_text(angles, ", "));
   }
   if (known) {
-    const bool acts = !result.alignment.alignment.none();
+    Alignment told = result.alignment.alignment;
+    told.water = {};
+    const bool acts = !told.none();
     lines.push_back("commands: " + join_text(commands, ", ") +
-                    (acts ? "; " + result.alignment.alignment.text(result.rate_hz) : ""));
+                    (acts ? "; " + told.text(result.rate_hz) : ""));
+  }
+  if (!result.current.current.none()) {
+    lines.push_back("velocities are through the water: " + result.current.current.text());
   }
   return lines;
 }

@@ -12,6 +12,7 @@
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "study/current.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -98,7 +99,8 @@ std::vector<LagInterval> lags_of(const log::Dataset& data, const Split& split,
 }
 
 log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
-  if (alignment.none()) {
+  data = through_water(std::move(data), alignment.water);
+  if (!alignment.shifts() && alignment.actuators.empty()) {
     return data;
   }
   std::vector<std::size_t> commands;
@@ -131,7 +133,9 @@ log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
 }
 
 std::string alignment_text(const AlignmentResult& found, double rate_hz) {
-  return found.alignment.text(rate_hz) + ": " + found.why;
+  Alignment commands = found.alignment;
+  commands.water = {};
+  return commands.text(rate_hz) + ": " + found.why;
 }
 
 }  // namespace kelpie::study

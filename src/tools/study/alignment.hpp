@@ -39,10 +39,10 @@ AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const s
 std::vector<LagInterval> lags_of(const log::Dataset& data, const Split& split,
                                  const Alignment& alignment);
 
-/// The log with its commands shifted and sent through their actuators within stretches without a
-/// gap in time or a change of configuration (AlignedRows). Times, targets and velocities stay in
-/// place. Requires a rate where there is something to do. Throws InputError on a command that is no
-/// input.
+/// The log in velocities through the water (through_water()), with its commands shifted and sent
+/// through their actuators within stretches without a gap in time or a change of configuration
+/// (AlignedRows). Times, targets and velocities stay in place. Requires a rate where there is
+/// something to do. Throws InputError on a command that is no input.
 log::Dataset aligned(log::Dataset data, const Alignment& alignment);
 
 /// Alignment::text() and the reason.

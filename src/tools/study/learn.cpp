@@ -13,6 +13,7 @@
 #include "kelpie/motion/term_set.hpp"
 #include "study/alignment.hpp"
 #include "study/baselines.hpp"
+#include "study/current.hpp"
 #include "study/diagnosis.hpp"
 #include "study/training_scales.hpp"
 
@@ -52,7 +53,7 @@ void settle_angles(const log::Dataset& data, const Split& split, std::string& te
 
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
                         const std::string& align, const std::optional<AlignmentResult>& known,
-                        bool with_lags) {
+                        bool with_lags, const std::string& current) {
   LearnPlan plan{.data = std::move(data),
                  .split = {},
                  .settings = std::move(settings),
@@ -64,6 +65,17 @@ LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSett
   }
   plan.alignment =
       known ? *known : choose_alignment(plan.data, plan.split, plan.settings.shared.states, align);
+  plan.alignment.alignment.water = {};
+  if (current != "none") {
+    plan.current = choose_current(plan.data, plan.split, plan.settings.shared.states,
+                                  plan.alignment.alignment);
+  }
+  if (!plan.current.current.none()) {
+    plan.data = through_water(std::move(plan.data), plan.current.current);
+    if (!known) {
+      plan.alignment = choose_alignment(plan.data, plan.split, plan.settings.shared.states, align);
+    }
+  }
   plan.commands = plan.alignment.alignment.commands;
   if (plan.commands.empty()) {
     plan.commands = commands_of(plan.data, plan.split, plan.settings.shared.states);
@@ -72,6 +84,7 @@ LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSett
     plan.lags = lags_of(plan.data, plan.split, plan.alignment.alignment);
   }
   plan.data = aligned(std::move(plan.data), plan.alignment.alignment);
+  plan.alignment.alignment.water = plan.current.current;
   return plan;
 }
 
@@ -101,6 +114,7 @@ void describe(const LearnPlan& plan, StreamResult& result) {
   result.seed = plan.seed;
   result.commands = plan.commands;
   result.alignment = plan.alignment;
+  result.current = plan.current;
   result.settings = plan.settings.values();
 }
 

@@ -23,6 +23,7 @@ struct LearnPlan {
   ModelSettings settings;
   std::vector<std::string> commands{};  ///< the inputs that are commands (find_commands())
   AlignmentResult alignment;
+  CurrentResult current{};          ///< with the reason; empty `why`: nobody asked
   std::vector<LagInterval> lags{};  ///< of the actuators, where asked for
   std::uint64_t seed = 1;           ///< of a random split
   std::string from{};  ///< file of the model that the run continues; empty: a new model
@@ -35,14 +36,16 @@ struct LearnPlan {
 };
 
 /// Splits the rows, settles `terms = auto` by the size of roll and pitch in the training rows
-/// (`auto:degrees` beyond angles in radians, `quadratic` beyond angles in degrees; not with `known`,
-/// which an earlier model gives), finds the alignment (choose_alignment, unless `known` gives one)
-/// and aligns the commands; `with_lags`: with the intervals of lags. Throws InputError where the
-/// log can't be split or aligned in this way.
+/// (`auto:degrees` beyond angles in radians, `quadratic` beyond angles in degrees; not with
+/// `known`, which an earlier model gives), finds the alignment (choose_alignment, unless `known`
+/// gives one) and aligns the commands; `with_lags`: with the intervals of lags. `current`: "auto"
+/// looks for a current where the log has a heading,
+/// takes the current off and the heading out of the inputs, and finds the alignment once more;
+/// "none". Throws InputError where the log can't be split or aligned in this way.
 LearnPlan plan_learning(log::Dataset data, const SplitSettings& split, ModelSettings settings,
                         const std::string& align,
                         const std::optional<AlignmentResult>& known = std::nullopt,
-                        bool with_lags = false);
+                        bool with_lags = false, const std::string& current = "none");
 
 /// A new model for the plan's log. Throws InputError, naming the column, where the training rows
 /// give no scaling.

@@ -113,10 +113,11 @@ struct StreamResult {
   double rate_hz = 0.0;
   std::vector<std::string> input_names;
   std::vector<std::string> commands{};  ///< the inputs that are commands; empty: not known
-  std::string split;          ///< label, e.g. "blocks of 400 rows, every 5th held out"
-  std::string from;           ///< file of the continued model; empty: a new model
-  std::string scales;         ///< source of the scaling, e.g. "first 200 samples"
-  AlignmentResult alignment;  ///< of commands; empty `why`: not requested
+  std::string split;                    ///< label, e.g. "blocks of 400 rows, every 5th held out"
+  std::string from;                     ///< file of the continued model; empty: a new model
+  std::string scales;                   ///< source of the scaling, e.g. "first 200 samples"
+  AlignmentResult alignment;            ///< of commands; empty `why`: not requested
+  CurrentResult current;                ///< of the water; empty `why`: not looked for
   std::uint64_t seed = 0;
   std::size_t training_rows = 0;
   std::size_t held_out_rows = 0;

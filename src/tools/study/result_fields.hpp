@@ -178,6 +178,7 @@ inline constexpr auto kFields<StreamResult> = std::tuple{
     shown("from", [](const StreamResult& result) { return unless_empty(result.from); }),
     shown("scales", &StreamResult::scales),
     shown("alignment", &StreamResult::alignment),
+    shown("current", &StreamResult::current),
     shown("training_rows", &StreamResult::training_rows),
     shown("held_out_rows", &StreamResult::held_out_rows),
     shown("samples_shown", &StreamResult::samples_shown),

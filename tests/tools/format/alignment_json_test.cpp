@@ -111,5 +111,32 @@ TEST(AlignmentJson, RefusesValuesThatCantBe) {
   EXPECT_NE(refusal("commands", nlohmann::json::array()), "");
 }
 
+TEST(AlignmentJson, ACurrentIsReadBackAndBadOnesAreRefused) {
+  TrainedModel model = shifted_model();
+  Current& water = model.alignment.water;
+  water = {.heading = "psi",
+           .unit = -0.5,
+           .surge = model.input_names[0],
+           .sway = model.input_names[0],
+           .yaw_rate = model.input_names[0],
+           .targets = {0, 0},
+           .times_s = {0.0, 1.5},
+           .velocity = {{0.1, -0.2}, {0.3, 0.4}}};
+  const auto good = nlohmann::json::parse(format::model_json(model));
+  EXPECT_EQ(format::parse_model_json(good.dump(), "m.json").alignment.water, water);
+  const auto refusal = [&](const char* key, const nlohmann::json& value) {
+    auto bad = good;
+    bad["alignment"]["current"][key] = value;
+    return message_of<InputError>([&] { format::parse_model_json(bad.dump(), "m.json"); });
+  };
+  const std::string place = "m.json: alignment.current";
+  EXPECT_EQ(refusal("surge", "x"), place + ".surge: has to be an input");
+  EXPECT_EQ(refusal("targets", {0, 64}), place + ".targets: has to hold places of targets, from 0");
+  EXPECT_EQ(refusal("times_s", nlohmann::json::array()), place + ".times_s: has to hold a time");
+  for (const char* const key : {"unit_rad", "times_s", "velocity_m_s"}) {
+    EXPECT_EQ(refusal(key, {0, 0}).substr(0, place.size()), place) << key;
+  }
+}
+
 }  // namespace
 }  // namespace kelpie::alignment_json_test
