@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/model/current.hpp"
 #include "model/alignment_fit.hpp"
 #include "motion/motion_terms.hpp"
 

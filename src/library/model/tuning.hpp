@@ -35,7 +35,7 @@ inline constexpr struct ModelTuning {
     double kernel_ridge = 0.01;             ///< of a unit kernel; by hand
   } alignment;
 
-  /// Search of the current (model/current.hpp).
+  /// Search of the current (find_current()).
   struct Water {
     std::size_t most_fitted_rows = 3'000;  ///< rows per fit, for the cost; by hand
     std::size_t blocks_per_fold = 5;  ///< spread over the log, since a current wanders; by hand

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "kelpie/model/alignment.hpp"
-#include "kelpie/model/current.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
 

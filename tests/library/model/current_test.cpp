@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/current.hpp"
+#include "kelpie/model/alignment.hpp"
 
 #include <gtest/gtest.h>
 
