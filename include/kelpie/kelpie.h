@@ -113,7 +113,7 @@ kelpie_status kelpie_predict_with_jacobian(const kelpie_model* model, const doub
                                            size_t inputs, double* y, size_t targets,
                                            double* jacobian);
 
-/** A prediction with its uncertainty (docs/method/uncertainty.md, docs/method/uncertainty.md). */
+/** A prediction with its uncertainty (docs/method/uncertainty.md). */
 typedef struct kelpie_prediction {
   double value;
   double lower;       /**< the interval that holds the truth with the promised share; infinite */

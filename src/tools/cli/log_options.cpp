@@ -21,6 +21,7 @@
 #include "log/plausibility.hpp"
 #include "report/sampling_table.hpp"
 #include "study/alignment.hpp"
+#include "study/baselines.hpp"
 #include "study/current.hpp"
 
 namespace kelpie::cli {
@@ -221,7 +222,7 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
                       !options.accept.empty());
   }
   const format::LearnedLog without_heading =
-      format::learned_log(study::without_input(data, data.heading_column));
+      format::learned_log(study::without_inputs(data, {data.heading_column}));
   std::optional<AlignmentResult> known;
   if (from != nullptr && options.align == kAlignAuto) {
     known = study::alignment_at(from->alignment(), data.rate_hz, from->file());

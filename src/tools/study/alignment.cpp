@@ -17,20 +17,6 @@
 namespace kelpie::study {
 namespace {
 
-AlignmentProblem problem_of(const log::Dataset& data, const Split& split,
-                            const std::string& states) {
-  return {.inputs = data.inputs,
-          .targets = data.targets,
-          .times_s = data.times_s,
-          .configurations = data.configurations,
-          .rows = split.training,
-          .input_names = data.input_names,
-          .target_count = data.target_names.size(),
-          .states = states,
-          .rate_hz = data.rate_hz,
-          .known = known_actuators(data.actuators)};
-}
-
 AlignmentResult given_alignment(const AlignmentProblem& problem, const std::string& wish) {
   double seconds = 0.0;
   parse_number(wish, seconds);  // "none" is 0 s
@@ -51,6 +37,20 @@ AlignmentResult given_alignment(const AlignmentProblem& problem, const std::stri
 }
 
 }  // namespace
+
+AlignmentProblem alignment_problem(const log::Dataset& data, const Split& split,
+                                   const std::string& states) {
+  return {.inputs = data.inputs,
+          .targets = data.targets,
+          .times_s = data.times_s,
+          .configurations = data.configurations,
+          .rows = split.training,
+          .input_names = data.input_names,
+          .target_count = data.target_names.size(),
+          .states = states,
+          .rate_hz = data.rate_hz,
+          .known = known_actuators(data.actuators)};
+}
 
 std::map<std::string, Actuator> known_actuators(
     const std::map<std::string, log::KnownActuator>& known) {
@@ -76,14 +76,14 @@ AlignmentResult choose_alignment(const log::Dataset& data, const Split& split,
     return {.alignment = {}, .gain = 0.0, .why = "as given by --align"};
   }
   check_align(wish, "--align");
-  const AlignmentProblem problem = problem_of(data, split, states);
+  const AlignmentProblem problem = alignment_problem(data, split, states);
   return wish == "auto" ? find_alignment(problem) : given_alignment(problem, wish);
 }
 
 std::vector<std::string> commands_of(const log::Dataset& data, const Split& split,
                                      const std::string& states) {
   std::vector<std::string> names;
-  for (const std::size_t i : find_commands(problem_of(data, split, states))) {
+  for (const std::size_t i : find_commands(alignment_problem(data, split, states))) {
     names.push_back(data.input_names[i]);
   }
   return names;
@@ -95,7 +95,7 @@ AlignmentResult alignment_at(const Alignment& alignment, double rate_hz, const s
 
 std::vector<LagInterval> lags_of(const log::Dataset& data, const Split& split,
                                  const Alignment& alignment) {
-  return lag_intervals(problem_of(data, split, "auto"), alignment);
+  return lag_intervals(alignment_problem(data, split, "auto"), alignment);
 }
 
 log::Dataset aligned(log::Dataset data, const Alignment& alignment) {

@@ -15,6 +15,11 @@ namespace kelpie::study {
 std::map<std::string, Actuator> known_actuators(
     const std::map<std::string, log::KnownActuator>& known);
 
+/// The training rows for a search of alignment or current. Refers to `data` and `split`, which have
+/// to outlive the problem.
+AlignmentProblem alignment_problem(const log::Dataset& data, const Split& split,
+                                   const std::string& states);
+
 /// Throws InputError (`field`) unless `wish` is a value of --align: "auto", "none", or seconds
 /// within ±Alignment::kMostS. For a check before a log is read.
 void check_align(const std::string& wish, const std::string& field);

@@ -11,6 +11,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "study/alignment.hpp"
+#include "study/baselines.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -34,47 +35,19 @@ CurrentResult choose_current(const log::Dataset& data, const Split& split,
   if (!std::ranges::all_of(data.headings, [](double heading) { return std::isfinite(heading); })) {
     return {.current = {}, .gain = 0.0, .why = data.heading_column + " is not known in every row"};
   }
-  const log::Dataset rows = aligned(without_input(data, data.heading_column), alignment);
-  const AlignmentProblem problem{.inputs = rows.inputs,
-                                 .targets = rows.targets,
-                                 .times_s = rows.times_s,
-                                 .configurations = rows.configurations,
-                                 .rows = split.training,
-                                 .input_names = rows.input_names,
-                                 .target_count = rows.target_names.size(),
-                                 .states = states,
-                                 .rate_hz = rows.rate_hz};
-  return find_current(problem, rows.heading_column, rows.headings);
+  const log::Dataset rows = aligned(without_inputs(data, {data.heading_column}), alignment);
+  return find_current(alignment_problem(rows, split, states), rows.heading_column, rows.headings);
 }
 
 std::string current_text(const CurrentResult& found) {
   return (found.current.none() ? "still water" : found.current.text()) + ": " + found.why;
 }
 
-log::Dataset without_input(log::Dataset data, const std::string& name) {
-  const auto found = std::ranges::find(data.input_names, name);
-  if (found == data.input_names.end()) {
-    return data;
-  }
-  const std::size_t width = data.input_names.size();
-  const auto column = static_cast<std::size_t>(found - data.input_names.begin());
-  std::vector<double> inputs;
-  inputs.reserve(data.inputs.size());
-  for (std::size_t i = 0; i < data.inputs.size(); ++i) {
-    if (i % width != column) {
-      inputs.push_back(data.inputs[i]);
-    }
-  }
-  data.inputs = std::move(inputs);
-  data.input_names.erase(found);
-  return data;
-}
-
 log::Dataset through_water(log::Dataset data, const Current& current) {
   if (current.none()) {
     return data;
   }
-  data = without_input(std::move(data), current.heading);
+  data = without_inputs(std::move(data), {current.heading});
   const std::size_t surge = input_called(data, current.surge);
   const std::size_t sway = input_called(data, current.sway);
   const std::size_t yaw_rate = input_called(data, current.yaw_rate);

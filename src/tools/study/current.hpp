@@ -17,9 +17,6 @@ CurrentResult choose_current(const log::Dataset& data, const Split& split,
 /// Current::text(), or "still water", and the reason.
 std::string current_text(const CurrentResult& found);
 
-/// The log without this input; unchanged where there is no such input.
-log::Dataset without_input(log::Dataset data, const std::string& name);
-
 /// The log in velocities through the water, and accelerations against the water where the log has
 /// targets; without the heading among the inputs. Unchanged in still water. Throws InputError on a
 /// log without the velocities, and without the heading in some row.
