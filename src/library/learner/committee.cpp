@@ -8,7 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "core/eigen.hpp"
 #include "learner/learner_state.hpp"
+#include "learner/sample_map.hpp"
 #include "learner/tuning.hpp"
 
 namespace kelpie {
@@ -45,6 +47,13 @@ SparseRegressionSettings physics_settings(std::size_t terms) {
   return {.terms = terms, .term_prior = kOnline.members.physics_term_prior};
 }
 
+std::vector<double> first_shares(bool alone) {
+  const std::span<const double> relative(kOnline.members.first_shares);
+  std::vector<double> shares(relative.begin(), alone ? relative.begin() + 1 : relative.end());
+  as_vector(shares) /= as_vector(shares).sum();
+  return shares;
+}
+
 const FunctionMix::Member* find_member(const FunctionMix& mix, std::string_view name) {
   const auto found = std::ranges::find(mix.members, name, &FunctionMix::Member::name);
   return found == mix.members.end() ? nullptr : &*found;
@@ -78,7 +87,7 @@ Committee::Fits::Fits(std::size_t inputs, std::size_t terms, std::size_t line_te
 Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
                      const Plan& plan)
     : learner_(inputs, settings, terms),
-      shares_(plan.alone ? 1 : kMembers),
+      shares_(first_shares(plan.alone)),
       to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
@@ -137,7 +146,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
       score(z, y);
     }
     seen_.add(y);
-    learn_in_fits(z, y, true);
+    learn_in(fits_->all(), z, y, true);
     relearn_slice();
   }
   if (shares_.block_ended()) {
@@ -148,16 +157,17 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
 
 // By what every member said before it had learned the block that the sample is of.
 void Committee::score(std::span<const double> z, double y) {
-  const Limits limits = seen_.limits();
+  const Limits seen = seen_.limits();
   std::array<double, kMembers> errors{};
   for (std::size_t k = 0; k < kMembers; ++k) {
-    errors[k] = std::abs(y - std::clamp(frozen_copies_[k](z), limits.low, limits.high));
+    errors[k] = std::abs(y - std::clamp(frozen_copies_[k](z), seen.low, seen.high));
   }
   shares_.score(errors);
 }
 
-void Committee::learn_in_fits(std::span<const double> z, double y, bool successive) {
-  for (SparseRegression* const fit : fits_->all()) {
+void Committee::learn_in(std::span<SparseRegression* const> fits, std::span<const double> z,
+                         double y, bool successive) {
+  for (SparseRegression* const fit : fits) {
     budget_.charge(fit->work());
     fit->learn(z, y, successive);
   }
@@ -188,6 +198,7 @@ void Committee::relearn_buffer(int rounds) {
     seen_.add(take_from_buffer(i));
   }
   to_learn_.begin(buffer, rounds);
+  kernels_only_ = false;
   relearn_slice();
 }
 
@@ -201,20 +212,23 @@ double Committee::take_from_buffer(std::size_t i) {
 void Committee::relearn_slice() {
   const SampleCollector& buffer = learner_.champion().buffer();
   const bool relearning = !to_learn_.done();
+  const auto all = fits_->all();
+  const std::span<SparseRegression* const> fits(all.data(),
+                                                kernels_only_ ? Fits::kWithKernels : all.size());
   Budget part = budget_.split_half();
   for (std::size_t k = 0; k < kOnline.members.slice && !to_learn_.round_done() && part.spend();
        ++k) {
     if (const std::optional<std::size_t> i = to_learn_.next(buffer)) {
       const double y = take_from_buffer(*i);
-      learn_in_fits(sample_, y, false);
+      learn_in(fits, sample_, y, false);
     }
   }
-  std::ranges::for_each(fits_->all(), &SparseRegression::publish);
+  std::ranges::for_each(all, &SparseRegression::publish);
   if (relearning && to_learn_.done()) {
     shares_.halve_evidence();
     freeze_copies();
   } else if (relearning && to_learn_.round_done()) {
-    std::ranges::for_each(fits_->all(), &SparseRegression::start_over);
+    std::ranges::for_each(fits, &SparseRegression::start_over);
     to_learn_.next_round(buffer);
   }
 }
@@ -271,13 +285,13 @@ double Committee::predict(std::span<const double> z) const {
   WeightedFunctions room;
   return alone() || !learner_.champion().ready()
              ? learner_.predict(z)
-             : kelpie::mixed_value(weighted_functions(room), seen_.limits(), z);
+             : kelpie::mixed_value(weighted_functions(room), limits(), z);
 }
 
-// What the learner's fine part adds to what all say.
+// What the learner's fine part adds to the weighted mean.
 double Committee::short_range_part(std::span<const double> z) const {
-  const auto bounded = [&](double said) {
-    return std::clamp(said, seen_.limits().low, seen_.limits().high);
+  const auto bounded = [seen = seen_.limits()](double said) {
+    return std::clamp(said, seen.low, seen.high);
   };
   const SvrFunction& model = learner_.model();
   return learner_.champion().ready()
@@ -287,7 +301,7 @@ double Committee::short_range_part(std::span<const double> z) const {
 
 double Committee::with_gradient(std::span<const double> z, std::span<double> gradient) const {
   WeightedFunctions room;
-  return mixed_value_with_gradient(weighted_functions(room), seen_.limits(), z, gradient);
+  return mixed_value_with_gradient(weighted_functions(room), limits(), z, gradient);
 }
 
 std::vector<MemberShare> Committee::members() const {
@@ -299,7 +313,7 @@ std::vector<MemberShare> Committee::members() const {
 }
 
 void Committee::refresh(FunctionMix& copies) const {
-  copies.limits = seen_.limits();
+  copies.limits = limits();
   for (std::size_t k = 0; k < copies.members.size(); ++k) {
     copies.members[k].share = shares_.shares()[k];
     copies.members[k].function.assign(function(k));
@@ -307,7 +321,7 @@ void Committee::refresh(FunctionMix& copies) const {
 }
 
 FunctionMix Committee::function_mix() const {
-  FunctionMix copies{.members = {}, .limits = seen_.limits()};
+  FunctionMix copies{.members = {}, .limits = limits()};
   for (std::size_t k = 0; k < shares_.shares().size(); ++k) {
     copies.members.push_back({std::string(kNames[k]), shares_.shares()[k], function(k)});
   }
@@ -327,16 +341,37 @@ double Committee::term_error(std::size_t k) const {
   return alone() ? std::numeric_limits<double>::quiet_NaN() : fits_->memory.term_error(k);
 }
 
+void Committee::forget_usual_errors() {
+  if (!alone()) {
+    std::ranges::for_each(fits_->all(), &SparseRegression::forget_usual_error);
+  }
+}
+
 RescaleStatus Committee::rescale(const SampleMap& map) {
   if (!to_learn_.done()) {
     return RescaleStatus::under_way;  // one long job at a time
   }
   const RescaleStatus step = learner_.rescale(map);
   if (step == RescaleStatus::switched && !alone()) {
-    reset();
-    relearn_buffer(1);
+    rescale_fits(map);
   }
   return step;
+}
+
+void Committee::rescale_fits(const SampleMap& map) {
+  const auto [gain, offset] = linear_part(map, sample_);
+  const SampleCollector& buffer = learner_.champion().buffer();
+  const auto factors = std::span<const double>(sample_).subspan(buffer.kernel().inputs());
+  seen_.rescale(gain, offset);
+  for (SparseRegression* const fit : {&fits_->physics, &fits_->line, &fits_->mean}) {
+    fit->rescale(factors, gain, offset);
+  }
+  for (SparseRegression* const fit : {&fits_->precise, &fits_->memory}) {
+    fit->clear();
+  }
+  to_learn_.begin(buffer, 1);
+  kernels_only_ = true;
+  relearn_slice();
 }
 
 void Committee::shift(std::span<const double> step, const Decision& news) {
@@ -368,6 +403,17 @@ LearnerState Committee::state() const {
           .relearning = !to_learn_.done()};
 }
 
+// Members that know nothing yet, or whose scale is too small, disagree for another reason than the
+// place.
+Limits Committee::limits() const {
+  using Task = AdaptiveSvr::SliceTask;
+  const bool relearning = !to_learn_.done();
+  const bool outgrown = learner_.task() == Task::rescale || learner_.task() == Task::catch_up;
+  Limits limits = seen_.limits();
+  limits.caution = alone() || relearning || outgrown ? 0.0 : kOnline.members.caution;
+  return limits;
+}
+
 const SvrFunction& Committee::function(std::size_t member) const {
   return member == 0 ? learner_.model() : fits_->all()[member - 1]->model();
 }
@@ -387,6 +433,7 @@ void Committee::visit(Archive& archive) {
   }
   std::ranges::for_each(frozen_copies_, [&](SvrFunction& one) { archive.part("looked", one); });
   archive.part("to learn", to_learn_);
+  archive.flag(kernels_only_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
 }

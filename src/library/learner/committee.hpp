@@ -80,9 +80,14 @@ class Committee final : public OnlineRegressor {
   /// without the member `memory`.
   double term_error(std::size_t k) const;
 
-  /// Moves to another scale, as AdaptiveSvr::rescale(). When the learner has switched, the other
-  /// members relearn the learner's buffer. Waits while an earlier relearning is under way.
+  /// Moves to another scale, as AdaptiveSvr::rescale(). When the learner has switched, linear
+  /// members take the scale over and forget nothing. Kernels have other places in another scale:
+  /// `precise` and `memory` relearn the learner's buffer. Waits while an earlier relearning is
+  /// under way.
   RescaleStatus rescale(const SampleMap& map);
+
+  /// The vehicle enters a range where errors are not known yet: large errors are no outliers.
+  void forget_usual_errors();
 
   /// Resumes learning from a function mix: the learner with the support vectors, at the time `t`
   /// [s], the other members with the values at these places, with the mix's weights and limits. A
@@ -123,6 +128,8 @@ class Committee final : public OnlineRegressor {
       return {&precise, &memory, &physics, &line, &mean};
     }
 
+    static constexpr std::size_t kWithKernels = 2;  ///< the first two
+
     SparseRegression precise;
     SparseRegression memory;
     SparseRegression physics;
@@ -131,17 +138,20 @@ class Committee final : public OnlineRegressor {
   };
 
   bool alone() const { return !fits_; }
+  Limits limits() const;
   const SvrFunction& function(std::size_t member) const;
   std::span<const WeightedFunction> weighted_functions(WeightedFunctions& room) const;
   double short_range_part(std::span<const double> z) const;
   void score(std::span<const double> z, double y);
-  void learn_in_fits(std::span<const double> z, double y, bool successive);
+  void learn_in(std::span<SparseRegression* const> fits, std::span<const double> z, double y,
+                bool successive);
   void freeze_copies();
   void reset();
   void reset_for_new_vehicle();
   void relearn_buffer(int rounds);
   double take_from_buffer(std::size_t i);
   void relearn_slice();
+  void rescale_fits(const SampleMap& map);
   SampleStore places_of(const SvrFunction& function, const PastModel::Completion& complete);
 
   AdaptiveSvr learner_;
@@ -150,6 +160,7 @@ class Committee final : public OnlineRegressor {
   MemberShares shares_;
   SeenRange seen_;
   Relearning to_learn_;         ///< the buffer's samples that the fits have still to relearn
+  bool kernels_only_ = false;   ///< these fits are `precise` and `memory`
   std::vector<double> sample_;  ///< scratch
   Budget budget_;               ///< of every update
 };

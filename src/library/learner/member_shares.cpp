@@ -7,8 +7,8 @@
 
 namespace kelpie {
 
-MemberShares::MemberShares(std::size_t members) : members_(members) {
-  update_weights();
+MemberShares::MemberShares(std::span<const double> first) : members_(first.size()) {
+  resume_from(first);
 }
 
 void MemberShares::score(std::span<const double> errors) {
@@ -37,10 +37,9 @@ void MemberShares::learn_block() {
   losses_.all = kOnline.shares.keep * losses_.all + std::max(all, kOnline.shares.least_usual);
   losses_.blocks = kOnline.shares.keep * losses_.blocks + 1.0;
   losses_.calibration = calibration_;
-  // Losses that shares were given with have the unit 1 until the first block tells it.
-  const double unit = before_.blocks > 0.0 ? 1.0 : losses_.usual();
   for (std::size_t k = 0; k < members_; ++k) {
-    losses_.of[k] = kOnline.shares.keep * unit * losses_.of[k] + block_[k];
+    losses_.first[k] *= kOnline.shares.keep;
+    losses_.of[k] = kOnline.shares.keep * losses_.of[k] + block_[k];
   }
 }
 
@@ -63,8 +62,7 @@ void MemberShares::resume_from(std::span<const double> shares) {
   losses_ = {};
   calibration_ = {};
   for (std::size_t k = 0; k < members_; ++k) {
-    losses_.of[k] =
-        -std::log(std::max(shares[k], kOnline.shares.least_share)) / kOnline.shares.learning_rate;
+    losses_.first[k] = std::log(std::max(shares[k], kOnline.shares.least_share));
   }
   before_ = losses_;
   update_weights();
@@ -85,11 +83,13 @@ void MemberShares::start_block() {
 
 void MemberShares::update_weights() {
   slope_ = losses_.calibration.value();
-  const std::span<const double> losses(losses_.of.data(), members_);
-  const double least = *std::ranges::min_element(losses);
+  for (std::size_t k = 0; k < members_; ++k) {
+    shares_[k] = losses_.first[k] - kOnline.shares.learning_rate * losses_.of[k] / losses_.usual();
+  }
+  const double most = *std::ranges::max_element(std::span(shares_).first(members_));
   double total = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
-    shares_[k] = std::exp(-kOnline.shares.learning_rate * (losses[k] - least) / losses_.usual());
+    shares_[k] = std::exp(shares_[k] - most);
     total += shares_[k];
   }
   for (std::size_t k = 0; k < members_; ++k) {
@@ -102,6 +102,7 @@ void MemberShares::visit(Archive& archive) {
   archive.whole(scored_, 0, kBlock - 1);
   archive.numbers(std::span(block_).first(members_));
   for (Losses* const losses : {&losses_, &before_, &kept_}) {
+    archive.numbers(std::span(losses->first).first(members_));
     archive.numbers(std::span(losses->of).first(members_));
     archive.number(losses->all);
     archive.number(losses->blocks);

@@ -13,8 +13,9 @@ namespace kelpie {
 /// Weights of a committee's members, from their errors on samples they have not learned yet, recent
 /// errors first (exponential weights: Cesa-Bianchi & Lugosi 2006).
 ///
-///     share_k ∝ exp(−η L_k / e),  L_k ← λ L_k + mean of its block's errors, each at most 3
+///     share_k ∝ exp(π_k − η L_k / e),  L_k ← λ L_k + mean of its block's errors, each at most 3
 ///
+/// π_k, the logarithm of the first share, fades with every block as L does: π_k ← λ π_k.
 /// e is the mean error of the members, weighted by their shares: division by e makes the weights
 /// independent of the noise level. A block consists of kBlock samples, predicted by copies of the
 /// members made before the block. (One step ahead, a member with a memory of the last sample would
@@ -25,7 +26,8 @@ class MemberShares {
   static constexpr std::size_t kMostMembers = 8;
   static constexpr std::size_t kBlock = 20;  ///< samples
 
-  explicit MemberShares(std::size_t members);  ///< Requires 0 < members <= kMostMembers.
+  /// Begins with these shares, of at most kMostMembers members and with the sum 1.
+  explicit MemberShares(std::span<const double> first);
 
   std::span<const double> shares() const { return {shares_.data(), members_}; }
 
@@ -60,6 +62,7 @@ class MemberShares {
 
   /// Discounted sums.
   struct Losses {
+    Values first{};                  ///< π_k
     Values of{};                     ///< L_k
     double all = 0.0;                ///< of the committee
     double blocks = 0.0;             ///< discounted number of blocks

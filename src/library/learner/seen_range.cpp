@@ -50,6 +50,14 @@ void SeenRange::resume_from(const Limits& limits) {
   }
 }
 
+void SeenRange::rescale(double gain, double offset) {
+  for (auto* const ends : {&least_, &greatest_}) {
+    for (double& end : *ends) {
+      end = gain * end + offset;
+    }
+  }
+}
+
 void SeenRange::visit(Archive& archive) {
   archive.numbers(least_);
   archive.numbers(greatest_);

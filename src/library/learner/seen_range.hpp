@@ -22,6 +22,9 @@ class SeenRange {
   /// Restores limits; infinite limits: as clear().
   void resume_from(const Limits& limits);
 
+  /// Targets y become gain · y + offset. Requires gain > 0.
+  void rescale(double gain, double offset);
+
   void clear() { *this = {}; }  ///< Forgets the targets.
 
   void visit(Archive& archive);  ///< core/archive.hpp

@@ -88,6 +88,21 @@ void SparseRegression::doubt_terms(double samples) {
   }
 }
 
+void SparseRegression::rescale(std::span<const double> factors, double gain, double offset) {
+  usual_error_.clear();
+  correlation_.rescale(gain);
+  if (fit_.rows() == 0) {
+    return;
+  }
+  std::ranges::copy(factors.first(settings_.terms), features_.begin());
+  features_[first_centre() - 1] = 1.0;
+  fit_.rescale(features_, gain);
+  std::ranges::copy(fit_.theta(), features_.begin());
+  features_[first_centre() - 1] += offset;
+  fit_.set_theta(features_);
+  publish();
+}
+
 void SparseRegression::clear() {
   centres_.clear();
   usual_error_.clear();

@@ -77,6 +77,14 @@ class SparseRegression {
   /// weights, and what is known of the kernel part, stay. Cost O(m²). Allocates nothing.
   void doubt_terms(double samples);
 
+  /// Samples have another scale: term k becomes factors[k] φ_k, the target gain · y + offset.
+  /// Forgets the usual error alone. Requires a linear regression, a positive factor per term,
+  /// gain > 0. Cost O(m²). Allocates nothing.
+  void rescale(std::span<const double> factors, double gain, double offset);
+
+  /// Errors so far say nothing of the next: no sample is an outlier until the usual error is known.
+  void forget_usual_error() { usual_error_.clear(); }
+
   void clear();  ///< Forgets everything but τ. Allocates nothing.
 
   /// Forgets the samples and keeps the estimate, with the weight of the prior: the start for a

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/vector.hpp"
+#include "learner/sample_map.hpp"
 
 namespace kelpie {
 
@@ -25,19 +26,13 @@ void TermChange::clear() {
   any_ = false;
 }
 
-// The map scales each term and the target; only the target's zero moves besides, which is not of a
-// change.
+// The target's zero moves, too, which is not of a change.
 void TermChange::rescale(const SampleMap& map, std::span<double> z) {
-  double zero = 0.0;
-  std::ranges::fill(z, 0.0);
-  map(z, zero);
-  double one = 1.0;
-  std::ranges::fill(z, 1.0);
-  map(z, one);
+  const double gain = linear_part(map, z).gain;
   for (std::size_t k = 0; k + 1 < weights_.size(); ++k) {
-    weights_[k] *= (one - zero) / z[inputs_ + k];
+    weights_[k] *= gain / z[inputs_ + k];
   }
-  weights_.back() *= one - zero;
+  weights_.back() *= gain;
 }
 
 void TermChange::visit(Archive& archive) {

@@ -131,6 +131,21 @@ void TriangularFit::clear() {
   rows_ = 0;
 }
 
+void TriangularFit::rescale(std::span<const double> factors, double gain) {
+  auto factor = as_factor(factor_, terms());
+  const Eigen::Index m = factor.rows();
+  const auto by = as_vector(factors);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    factor.row(k).head(m).array() *= by.transpose().array();
+  }
+  factor.rightCols(factor.cols() - m) *= gain;
+  for (std::size_t k = 0; k < terms(); ++k) {
+    moment_[k] *= factors[k] * factors[k];
+    prior_[k] *= factors[k] * factors[k];
+  }
+  solve();
+}
+
 void TriangularFit::set_prior(std::span<const double> theta, std::span<const double> information) {
   clear();
   auto factor = as_factor(factor_, terms());

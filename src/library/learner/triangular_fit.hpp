@@ -62,6 +62,10 @@ class TriangularFit {
   /// term without excitation. Requires a value per term. Cost O(m²).
   double leverage(std::span<const double> phi) const;
 
+  /// Terms and targets have other units: φ_k becomes factors[k] φ_k, y becomes gain · y. Requires
+  /// positive numbers, a factor per term. Cost O(m²).
+  void rescale(std::span<const double> factors, double gain);
+
   void clear();  ///< Forgets the rows.
 
   /// Forgets the rows and starts from θ as a prior, with independent coefficients of the

@@ -27,6 +27,12 @@ class DynamicsAxis final : public Scaled {
   DynamicsAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
                const TermSet& terms, std::optional<AxisScaling> scaling = {});
 
+  /// Scaled::expect(); errors may be as large as these samples.
+  void expect(const ThinnedRows& samples) {
+    Scaled::expect(samples);
+    learner_.forget_usual_errors();
+  }
+
   void limit(const Budget& budget) { learner_.limit(budget); }  ///< Committee::limit().
 
   Decision update(std::span<const double> x, double y, double t) override;

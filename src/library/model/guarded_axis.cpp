@@ -247,6 +247,7 @@ void GuardedAxis::begin_probation(double t) {
 void GuardedAxis::begin_candidate(double t) {
   drop_candidate();
   begin_probation(t);
+  former_kept_ = false;
   candidate() = trusted();
   candidate().expect(refused_);
   begun_with_ = trusted().status().tally;
@@ -270,6 +271,7 @@ void GuardedAxis::trust_candidate(double t) {
   gone_.subtract(begun_with_);
   trusted_ = 1 - trusted_;
   probation_ = false;
+  former_kept_ = t > young_until_;
   guarded_ = !arguments_.scaling;
   std::swap(first_, refused_);
   refused_.clear();
@@ -288,20 +290,36 @@ void GuardedAxis::begin_anew(double t) {
   trusted() = arguments_.make();
   trusted().set_past_models(given_);
   begun_with_ = {};
+  const std::size_t first = first_alike(*candidate().scaling(), first_);
+  const std::size_t warm =
+      std::min(first + static_cast<std::size_t>(arguments_.shared.warmup), first_.size());
+  for (std::size_t i = first; i < warm; ++i) {
+    trusted().update(first_[i].x, first_[i].y, first_[i].t);
+  }
+  feed_trusted(warm);
+  first_.drop_oldest(first);
+}
+
+// The candidate took over too early.
+void GuardedAxis::return_to_former(double t) {
+  trusted_ = 1 - trusted_;
+  gone_.add(begun_with_);
+  gone_.subtract(trusted().status().tally);
+  begin_probation(t);
+  former_kept_ = false;
+  young_until_ = t;
+  feed_trusted(first_alike(*candidate().scaling(), first_));
+  first_.clear();
+}
+
+void GuardedAxis::feed_trusted(std::size_t first) {
   recent_ = 0.0;
   share_ = 0.0;
   refused_.clear();
   feeds_trusted_ = true;
-  const std::size_t first = first_alike(*candidate().scaling(), first_);
   for (std::size_t i = first; i < first_.size(); ++i) {
-    const WarmUp::Sample row = first_[i];
-    if (i - first < static_cast<std::size_t>(arguments_.shared.warmup)) {
-      trusted().update(row.x, row.y, row.t);
-    } else {
-      feed_.hold(row.x, row.y, row.t);
-    }
+    feed_.hold(first_[i].x, first_[i].y, first_[i].t);
   }
-  first_.drop_oldest(first);
 }
 
 void GuardedAxis::feed() {
@@ -327,7 +345,7 @@ void GuardedAxis::look(double t) {
   if (t > young_until_) {
     first_.clear();
   } else if (too_large(trusted(), first_)) {
-    begin_anew(t);
+    former_kept_ ? return_to_former(t) : begin_anew(t);
     return;
   }
   if (probation_ && too_large(candidate(), refused_)) {
@@ -401,11 +419,12 @@ void GuardedAxis::visit(Archive& archive) {
   archive.whole(trusted_, 0, 1);
   archive.part("trusted", trusted());
   archive.flag(probation_);
-  if (probation_) {
+  archive.flag(former_kept_);
+  if (probation_ || former_kept_) {
     archive.part("candidate", candidate());
     archive.require(candidate().scaling() != nullptr, "is a candidate without a scale");
   }
-  if (archive.loading() && !probation_) {
+  if (archive.loading() && !probation_ && !former_kept_) {
     candidate() = trusted();
   }
   archive.flag(candidate_serves_);

@@ -28,9 +28,10 @@ namespace kelpie {
 /// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
 /// for 60 s after a candidate took over, the guard looks every 5 s at the later half of the
 /// samples: when the target or an input stays within 0.12 standard deviations and within 0.36 of
-/// zero, and the axis explains next to nothing, a new axis learns this half and is trusted, and the
-/// former axis becomes the candidate. A candidate with too large a scale begins again in the same
-/// way.
+/// zero, and the axis explains next to nothing, this axis becomes the candidate. The axis that was
+/// trusted before the candidate took over is trusted again, if this axis was older than 90 s, or
+/// else a new axis; the axis learns this half. A candidate with too large a scale begins again in
+/// the same way.
 ///
 /// One axis learns a sample, so that the guard adds no work to an update, except to the few updates
 /// in which a candidate begins. Without `track`, every sample is plausible.
@@ -126,6 +127,8 @@ class GuardedAxis final : public OnlineRegressor {
   void drop_candidate();
   void trust_candidate(double t);
   void begin_anew(double t);
+  void return_to_former(double t);
+  void feed_trusted(std::size_t first);
   void look(double t);
   bool too_large(const DynamicsAxis& axis, const ThinnedRows& rows) const;
   void feed();
@@ -134,6 +137,7 @@ class GuardedAxis final : public OnlineRegressor {
   std::array<DynamicsAxis, 2> axes_;
   std::vector<StoredPastModel> given_;  ///< for a new axis; own past models are in a wrong scale
   std::size_t trusted_ = 0;             ///< number of the trusted axis
+  bool former_kept_ = false;            ///< the other axis was trusted until a candidate took over
   bool probation_ = false;              ///< the other axis is a candidate
   bool candidate_serves_ = false;       ///< the inputs of the last sample were far away
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small

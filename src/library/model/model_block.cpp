@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kNumbersOfSlot = 2;     // the publication, and the words in use
 constexpr std::size_t kNumbersOnce = 4;       // shift, members, support vectors, places
 constexpr std::size_t kNumbersOfMember = 7;   // beside the coefficients
-constexpr std::size_t kNumbersOfTarget = 4;   // beside mean and whitening
+constexpr std::size_t kNumbersOfTarget = 6;   // beside mean and whitening
 constexpr std::size_t kNumbersOfKnown = 4;    // per target
 constexpr std::size_t kWordsOfCacheLine = 8;  // 64 bytes
 constexpr std::size_t kLatest = 3;            // its place in the header
@@ -140,6 +140,8 @@ void put_targets(std::span<const Snapshot> snapshots, NumberWriter& out) {
     out.put(first);
     out.put(target.invert(axis.function.limits.low));
     out.put(target.invert(axis.function.limits.high));
+    out.put(axis.function.limits.caution);
+    out.put(target.scale * target.scale);
     out.put(std::span<const double>(input.mean));
     for (std::size_t row = 0; row < input.whitening.rows(); ++row) {
       for (std::size_t column = 0; column < input.whitening.columns(); ++column) {

@@ -39,7 +39,7 @@ namespace kelpie {
 /// The last two parts only where there is room for places. src/tools/format/model_block.inc reads
 /// the same.
 struct BlockLayout {
-  static constexpr std::uint64_t kMark = 0x3130'6b6c'656b'6c62;  // "blkelk01"
+  static constexpr std::uint64_t kMark = 0x3230'6b6c'656b'6c62;  // "blkelk02"
   static constexpr std::size_t kHeaderWords = 16;
   static constexpr std::size_t kLanes = 4;  ///< support vectors that are evaluated together
 

@@ -19,6 +19,7 @@
 namespace kelpie {
 namespace {
 
+constexpr int kWithoutCaution = 5;   // members' disagreement did not count
 constexpr int kWithoutAttitude = 4;  // `terms = auto` was `quadratic`
 constexpr int kOldVersion = 3;       // one learner per axis; `terms = auto` went by names
 constexpr std::size_t kMostAxes = 64;
@@ -170,6 +171,11 @@ SvrFunction read_function(const JsonNode& node, std::size_t inputs, std::size_t 
   return function;
 }
 
+// Files of older versions lack it.
+bool has(const JsonNode& node, const char* key) {
+  return node.json().contains(key) && !node.json()[key].is_null();
+}
+
 FunctionMix read_mix(const JsonNode& node, std::size_t inputs, std::size_t terms) {
   FunctionMix mix;
   double total = 0.0;
@@ -186,12 +192,11 @@ FunctionMix read_mix(const JsonNode& node, std::size_t inputs, std::size_t terms
     node["bounds"].require(ends[0] <= ends[1], "has to go up");
     mix.limits = {ends[0], ends[1]};
   }
+  if (has(node, "caution")) {
+    mix.limits.caution = node["caution"].number();
+    node["caution"].require(mix.limits.caution >= 0.0, "has to be 0 or more");
+  }
   return mix;
-}
-
-// Files of older versions lack it.
-bool has(const JsonNode& node, const char* key) {
-  return node.json().contains(key) && !node.json()[key].is_null();
 }
 
 TrainedModel::Axis read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms,
@@ -316,9 +321,9 @@ TrainedModel trained_model(const Json& document, const std::string& source) {
   const JsonNode root(document, source, "");
   const bool old = root["version"].json() == kOldVersion;
   const bool without_attitude = root["version"].json() == kWithoutAttitude;
-  root.require_format(kModelFormat, old                ? kOldVersion
-                                    : without_attitude ? kWithoutAttitude
-                                                       : kModelVersion);
+  const Json& version = root["version"].json();
+  const bool known = old || without_attitude || version == kWithoutCaution;
+  root.require_format(kModelFormat, known ? version.get<int>() : kModelVersion);
   TrainedModel model;
   model.input_names = root["inputs"].names(kMostInputs);
   const std::vector<JsonNode> axes = root["axes"].items();

@@ -15,7 +15,7 @@ namespace kelpie {
 // InputError (source, key) on invalid content.
 
 inline constexpr const char* kModelFormat = "kelpie-model";  ///< `format` of a model.json
-inline constexpr int kModelVersion = 5;                      ///< `version` as written now
+inline constexpr int kModelVersion = 6;                      ///< `version` as written now
 
 /// The model of a document. `source` names the document in messages.
 TrainedModel trained_model(const Json& document, const std::string& source);

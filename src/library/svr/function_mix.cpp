@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "core/vector.hpp"
 #include "kelpie/core/scaling.hpp"
 
 namespace kelpie {
 namespace {
+
+constexpr double kLeastShares = 1e-300;  // of a sum that is divided by
 
 // Calls `add(share, function)` for every member, whoever owns it.
 template <typename Add>
@@ -25,31 +28,101 @@ void for_each(const std::vector<FunctionMix::Member>& members, Add add) {
   }
 }
 
+/// Sums over functions, as mixed_value() has them; of all but the last from the first one's value.
+struct MixSums {
+  double mean = 0.0;     ///< Σ s_k f_k of all functions
+  double first = 0.0;    ///< f_0
+  double shares = 0.0;   ///< Σ s_k
+  double apart = 0.0;    ///< Σ s_k (f_k − f_0)
+  double squares = 0.0;  ///< Σ s_k (f_k − f_0)²
+  double last = 0.0;     ///< f_last
+
+  void add(double share, double value, bool is_last) {
+    mean += share * value;
+    if (is_last) {
+      last = value;
+      return;
+    }
+    first = shares == 0.0 && apart == 0.0 ? value : first;
+    shares += share;
+    apart += share * (value - first);
+    squares += share * (value - first) * (value - first);
+  }
+};
+
+/// The shrinkage of a mean and its derivatives.
+struct Shrinkage {
+  double by = 0.0;           ///< subtracted from the mean
+  double slope = 0.0;        ///< ∂by/∂g
+  double slope_of_d2 = 0.0;  ///< ∂by/∂D²
+  double centre = 0.0;       ///< mean of f_k − f_0 of all functions but the last
+};
+
+Shrinkage shrinkage_of(const MixSums& sums, double caution) {
+  if (caution == 0.0 || sums.shares <= 0.0) {
+    return {};
+  }
+  const double centre = sums.apart / sums.shares;
+  const double spread = caution * std::max(sums.squares / sums.shares - centre * centre, 0.0);
+  const double g = sums.shares * (sums.first + centre - sums.last);
+  const double signal = g * g + 1.0;
+  const double all = signal + spread;
+  return {.by = g * spread / all,
+          .slope = spread * (all - 2.0 * g * g) / (all * all),
+          .slope_of_d2 = caution * g * signal / (all * all),
+          .centre = centre};
+}
+
 template <typename WeightedFunctions>
 double value_of(const WeightedFunctions& functions, const Limits& limits,
                 std::span<const double> x) {
-  double sum = 0.0;
+  MixSums sums;
+  std::size_t left = functions.size();
   for_each(functions, [&](double share, const SvrFunction& function) {
-    sum += share * std::clamp(function(x), limits.low, limits.high);
+    sums.add(share, std::clamp(function(x), limits.low, limits.high), --left == 0);
   });
-  return sum;
+  return sums.mean - shrinkage_of(sums, limits.caution).by;
 }
 
 template <typename WeightedFunctions>
 double value_and_gradient(const WeightedFunctions& functions, const Limits& limits,
                           std::span<const double> x, std::span<double> gradient) {
-  std::array<double, kMostInputs + kMostTerms> slopes{};
+  using Slopes = std::array<double, kMostInputs + kMostTerms>;
+  Slopes slopes{};
+  Slopes spread_slopes{};  // Σ s_k (f_k − f_0) ∇f_k of all functions but the last
+  Slopes last_slopes{};
   const std::span<double> own = std::span(slopes).first(x.size());
+  const std::span<double> by_spread = std::span(spread_slopes).first(x.size());
+  const std::span<double> by_last = std::span(last_slopes).first(x.size());
   std::ranges::fill(gradient, 0.0);
-  double sum = 0.0;
+  MixSums sums;
+  std::size_t left = functions.size();
+  double last_share = 0.0;
   for_each(functions, [&](double share, const SvrFunction& function) {
-    const double said = function.with_gradient(x, own);
-    sum += share * std::clamp(said, limits.low, limits.high);
-    if (said > limits.low && said < limits.high) {
+    const bool is_last = --left == 0;
+    const double free = function.with_gradient(x, own);
+    const double value = std::clamp(free, limits.low, limits.high);
+    sums.add(share, value, is_last);
+    if (free <= limits.low || free >= limits.high) {
+      return;
+    }
+    if (is_last) {
+      last_share = share;
+      std::ranges::copy(own, by_last.begin());
+    } else {
       add_scaled(share, std::span<const double>(own), gradient);
+      add_scaled(share * (value - sums.first), std::span<const double>(own), by_spread);
     }
   });
-  return sum;
+  // g = Σ s_k f_k − shares f_last and D² = squares / shares − centre², both of all but the last
+  const Shrinkage shrinkage = shrinkage_of(sums, limits.caution);
+  const double d2 = shrinkage.slope_of_d2 * 2.0 / std::max(sums.shares, kLeastShares);
+  const double of_gradient = 1.0 - shrinkage.slope + d2 * shrinkage.centre;
+  const double of_last = last_share + shrinkage.slope * sums.shares;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    gradient[k] = of_gradient * gradient[k] - d2 * by_spread[k] + of_last * by_last[k];
+  }
+  return sums.mean - shrinkage.by;
 }
 
 }  // namespace

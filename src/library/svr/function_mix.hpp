@@ -10,10 +10,11 @@
 
 namespace kelpie {
 
-/// Limits of predictions, in units of the standardised target.
+/// What holds predictions back, in units of the standardised target.
 struct Limits {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
+  double caution = 0.0;  ///< κ >= 0: weight of the functions' disagreement
 };
 
 /// A function and its weight in a weighted mean.
@@ -22,9 +23,19 @@ struct WeightedFunction {
   const SvrFunction* function = nullptr;
 };
 
-/// The weighted mean of functions, each clamped to the limits: Σ share_k · clamp(f_k(x), low,
-/// high), on scaled samples. Requires shares with the sum 1. Cost: the sum over the functions.
-/// Allocates nothing; safe from many threads.
+/// The weighted mean of functions, each clamped to the limits, on scaled samples:
+///
+///     f = Σ s_k f_k,  f_k = clamp(f_k(x), low, high)
+///
+/// Where the functions disagree, the mean is shrunk towards the last function, the simplest. With
+/// the variance D² of all functions but the last, weighted by their shares, and g = f − f_last:
+///
+///     value = f − g κD² / (g² + 1 + κD²)
+///
+/// The disagreement of models of the same data estimates the variance of a prediction (ensembles:
+/// Krogh & Vedelsby 1995), and a mean with this variance is shrunk as by James & Stein (1961).
+/// Requires shares with the sum 1. Cost: the sum over the functions. Allocates nothing; safe from
+/// many threads.
 double mixed_value(std::span<const WeightedFunction> functions, const Limits& limits,
                    std::span<const double> x);
 

@@ -424,14 +424,15 @@ class ModelCode {
 
   std::string axis_entry(const TrainedModel::Axis& axis, std::size_t first) const {
     const auto& [input, target, term_scale] = axis.scaling;
+    const Limits& limits = axis.function.limits;
     std::string rows;
     for (std::size_t i = 0; i < input.whitening.rows(); ++i) {
       rows += (i > 0 ? ",\n    " : "") + text_.list(input.whitening.row(i));
     }
-    return fmt::format(
-        "  {{ {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
-        first + axis.function.members.size(), text_.bound(target.invert(axis.function.limits.low)),
-        text_.bound(target.invert(axis.function.limits.high)), text_.list(input.mean), rows);
+    return fmt::format("  {{ {}, {}, {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
+                       first + axis.function.members.size(), text_.bound(target.invert(limits.low)),
+                       text_.bound(target.invert(limits.high)), text_.number(limits.caution),
+                       text_.number(target.scale * target.scale), text_.list(input.mean), rows);
   }
 
   std::string member_entry(const AxisScaling& scaling, const FunctionMix::Member& member,

@@ -81,6 +81,7 @@ Json axis_json(const TrainedModel::Axis& axis) {
           {"half_width", file::number(axis.half_width)},
           {"known", axis.known ? known_json(*axis.known) : Json(nullptr)},
           {"bounds", std::isfinite(limits.low) ? Json{limits.low, limits.high} : Json(nullptr)},
+          {"caution", limits.caution},
           {"members", file::list(axis.function.members, member_json)}};
 }
 

@@ -120,7 +120,7 @@ inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) 
   model.settings.shared.scaling = shape.scaling;
   const std::size_t terms = model.terms.size();
   for (const std::string& target : shape.targets) {
-    FunctionMix mix{.members = {}, .limits = {.low = -1.0, .high = 2.0}};
+    FunctionMix mix{.members = {}, .limits = {.low = -1.0, .high = 2.0, .caution = 1.0}};
     for (const double share : {0.7, 0.3}) {
       mix.members.push_back(
           {share > 0.5 ? "learner" : "line", share, random_function(random, shape, terms)});

@@ -56,6 +56,32 @@ Slopes by_formula(const SvrFunction& function, const std::array<Slopes, 3>& z,
 
 // Value and gradient of an axis by the formula of reference/files.md, from what the model
 // publishes.
+// mixed_value() from the members' values.
+Slopes with_caution(const FunctionMix& mix, const std::vector<Slopes>& values) {
+  Slopes mean(0.0, Eigen::Vector3d::Zero());
+  Slopes others = mean;
+  double shares = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    mean += mix.members[k].share * values[k];
+    if (k + 1 < values.size()) {
+      others += mix.members[k].share * values[k];
+      shares += mix.members[k].share;
+    }
+  }
+  if (!(shares > 0.0)) {
+    return mean;
+  }
+  others /= shares;
+  Slopes variance(0.0, Eigen::Vector3d::Zero());
+  for (std::size_t k = 0; k + 1 < values.size(); ++k) {
+    const Slopes apart = values[k] - others;
+    variance += mix.members[k].share / shares * apart * apart;
+  }
+  const Slopes g = mean - values.back();
+  const Slopes spread = mix.limits.caution * variance;
+  return mean - g * spread / (g * g + 1.0 + spread);
+}
+
 Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::vector<double>& x) {
   std::array<Slopes, 3> raw;
   for (int i = 0; i < 3; ++i) {
@@ -69,16 +95,16 @@ Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::v
       value += axis.scaling.input.whitening(i, j) * (raw[j] - axis.scaling.input.mean[j]);
     }
   }
-  Slopes total(0.0, Eigen::Vector3d::Zero());
+  const Limits& limits = axis.function.limits;
+  std::vector<Slopes> values;
   for (const auto& [name, share, function] : axis.function.members) {
-    const Slopes said = by_formula(function, z, raw, axis.scaling.term_scale);
-    const auto& [low, high] = axis.function.limits;
-    if (said.value() > low && said.value() < high) {
-      total += share * said;
-    } else {
-      total += share * std::clamp(said.value(), low, high);
-    }
+    const Slopes free = by_formula(function, z, raw, axis.scaling.term_scale);
+    const bool inside = free.value() > limits.low && free.value() < limits.high;
+    values.push_back(inside ? free
+                            : Slopes(std::clamp(free.value(), limits.low, limits.high),
+                                     Eigen::Vector3d::Zero()));
   }
+  const Slopes total = with_caution(axis.function, values);
   return axis.scaling.target.mean + axis.scaling.target.scale * total;
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/random.hpp"
@@ -54,10 +56,38 @@ TEST(FunctionMix, NoMemberSaysMoreThanItsBounds) {
   EXPECT_DOUBLE_EQ(wild(x), 0.5 * bounded(0) + 0.3 * bounded(1) + 0.2 * 3.0);
 }
 
+// James & Stein: the estimate of a mean that is uncertain lies between the mean and the simplest
+// function, nearer to the latter the more the functions disagree.
+TEST(FunctionMix, DisagreementShrinksTheMeanTowardsTheLastFunction) {
+  const std::array x{0.3, -0.8, 1.2};
+  FunctionMix mix = three(0.0);
+  const double mean = mix(x);
+  const double last = mix.members[2].function(x);
+  double distance = std::abs(mean - last);
+  for (const double caution : {0.1, 1.0, 10.0}) {
+    mix.limits.caution = caution;
+    EXPECT_LT(std::abs(mix(x) - last), distance);
+    EXPECT_GT((mix(x) - last) * (mean - last), 0.0);
+    distance = std::abs(mix(x) - last);
+  }
+  mix.members[1].function = mix.members[0].function;
+  EXPECT_NEAR(mix(x), 0.8 * mix.members[0].function(x) + 0.2 * last, 1e-12) << "no disagreement";
+}
+
+TEST(FunctionMix, ALoneFunctionIsItself) {
+  FunctionMix mix = three(0.0);
+  mix.members.erase(mix.members.begin() + 1, mix.members.end());
+  mix.members[0].share = 1.0;
+  mix.limits.caution = 1.0;
+  const std::array x{0.3, -0.8, 1.2};
+  EXPECT_DOUBLE_EQ(mix(x), mix.members[0].function(x));
+}
+
 TEST(FunctionMix, TheGradientIsThatOfFiniteDifferencesInsideAndBeyondTheLimits) {
-  for (const double third : {0.0, 1e9}) {
+  for (const auto& [third, caution] :
+       {std::pair{0.0, 0.0}, {1e9, 0.0}, {0.0, 1.0}, {1e9, 1.0}, {-2.0, 5.0}}) {
     FunctionMix mix = three(third);
-    mix.limits = {.low = -20.0, .high = 20.0};
+    mix.limits = {.low = -20.0, .high = 20.0, .caution = caution};
     const std::array x{0.3, -0.8, 1.2};
     std::array<double, 3> gradient{};
     EXPECT_NEAR(mix.with_gradient(x, gradient), mix(x), 1e-12);

@@ -252,7 +252,7 @@ TEST(ModelJson, RefusesDamagedFilesNamingTheKey) {
               }).starts_with("m.json: file: holds a number out of a double's range: "));
   bad = good;
   bad["version"] = 1;
-  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 5");
+  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 6");
   bad = good;
   bad["axes"][1]["members"][0].erase("bias");
   EXPECT_EQ(refusal(bad), "m.json: axes[1].members[0]: has no 'bias'");

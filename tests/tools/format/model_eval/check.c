@@ -19,7 +19,7 @@
 #include "model_eval.inc"
 
 /* Two members: the first with one support vector at z = (1, 0), the second of terms alone. */
-static const struct kelpie_axis axes[] = {{0, 2, -10, 10, {1, 0}, {{2, 0}, {1, 0.5}}}};
+static const struct kelpie_axis axes[] = {{0, 2, -10, 10, 0, 1, {1, 0}, {{2, 0}, {1, 0.5}}}};
 static const struct kelpie_member members[] = {
     {0.75, 0, 1, 0.5, 1, 0.25, 3, {0, 0, 0, 0}},
     {0.25, 1, 1, 0.5, 1, 0, 0, {1, 10, 100, 1000}},
@@ -43,11 +43,22 @@ static const struct kelpie_step steps[] = {
 };
 static const short ends[] = {9, 15, 17, 24};
 static const short slopes[][2] = {{0, 0}, {0, 1}, {1, 1}, {2, 0}, {3, 0}};
+/* Three members that disagree. */
+static const struct kelpie_axis doubtful[] = {{0, 3, -10, 10, 2, 9, {1, 0}, {{2, 0}, {1, 0.5}}}};
+static const struct kelpie_member opinions[] = {
+    {0.5, 0, 1, 0.5, 1, 0.25, 3, {0, 0, 0, 0}},
+    {0.25, 1, 1, 0.5, 1, 0, 1, {0, 0, 0, 0}},
+    {0.25, 1, 1, 0.5, 1, 0, -2, {0, 0, 0, 0}},
+};
 static const struct kelpie_known known[] = {{0, 3, 0.25, 0.5}};
 static const double places[][2] = {{0, 0}, {0, 0}, {6, 0}};
 static const double densities[] = {1, 1, 0};
 static const struct kelpie_tables tables = {axes,  members, support_vectors, weights, steps,
                                             ends,  slopes,  known,           places,  densities};
+
+static const struct kelpie_tables disagreeing = {doubtful, opinions, support_vectors, weights,
+                                                 steps,    ends,     slopes,          known,
+                                                 places,   densities};
 
 static int near(double value, double expected) { return fabs(value - expected) <= 1e-14 * fabs(expected); }
 
@@ -75,5 +86,8 @@ int check(void)
   kelpie_assess(&tables, (const double[2]){4, -4}, &half_width, &novelty);
   if (!near(novelty, 2.0 / 3.0)) return 10;
   kelpie_assess(&tables, (const double[2]){100, 0}, &half_width, &novelty);
-  return novelty == 1 ? 0 : 11;
+  if (novelty != 1) return 11;
+  /* 5.5, 1 and -2: the mean is 2.5, the variance of the first two 4.5, g = 4.5. */
+  kelpie_evaluate(&disagreeing, vector, y, jacobian);
+  return near(y[0], 2.5 - 4.5 * 9 / (4.5 * 4.5 + 9 + 9)) ? 0 : 12;
 }
