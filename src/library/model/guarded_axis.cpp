@@ -275,6 +275,9 @@ void GuardedAxis::trust_candidate(double t) {
   guarded_ = !arguments_.scaling;
   std::swap(first_, refused_);
   refused_.clear();
+  if (former_kept_) {
+    first_.clear();  // what comes from now on tells whether the former axis was right
+  }
   run_ = 0;
   recent_ = 0.0;
   share_ = 0.0;

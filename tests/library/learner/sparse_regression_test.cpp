@@ -51,6 +51,41 @@ TEST(SparseRegression, LearnsWhatALineCannotSay) {
   EXPECT_LE(memory.centres(), 60U);
 }
 
+// φ' = 3 φ and y' = 0.4 y + 0.7: the function is the same in the new scale, and so is all that is
+// learned later, as if every sample had come in that scale.
+TEST(SparseRegression, ALinearOneForgetsNothingInAnotherScale) {
+  constexpr double kFactor = 3.0;
+  constexpr double kGain = 0.4;
+  for (const double offset : {0.0, 0.7}) {
+    RandomStream random(5, "scale");
+    SparseRegression moved(2, 1, {.terms = 1});
+    SparseRegression from_start(2, 1, {.terms = 1});
+    const auto learn = [&](int samples, bool rescaled) {
+      for (int i = 0; i < samples; ++i) {
+        std::vector<double> z = sample(random);
+        double y = 0.3 * z[2] - 0.2 + 0.01 * random.normal();
+        std::vector<double> other = z;
+        other[2] *= kFactor;
+        from_start.update(other, kGain * y + offset);
+        rescaled ? moved.update(other, kGain * y + offset) : moved.update(z, y);
+      }
+    };
+    learn(25, false);  // the usual error is not known yet
+    const std::vector<double> z = sample(random);
+    const double before = moved.model()(z);
+    moved.rescale(std::vector{kFactor}, kGain, offset);
+    const std::vector<double> in_new_scale{z[0], z[1], kFactor * z[2]};
+    EXPECT_NEAR(moved.model()(in_new_scale), kGain * before + offset, 1e-12);
+    learn(500, true);
+    if (offset == 0.0) {
+      EXPECT_NEAR(moved.term_error(0) / from_start.term_error(0), 1.0, 0.05);
+    }
+    // The prior pulls to 0 in either scale.
+    EXPECT_NEAR(moved.model()(in_new_scale), from_start.model()(in_new_scale),
+                offset == 0.0 ? 2e-4 : 2e-3);
+  }
+}
+
 // In exact arithmetic: kernel ridge regression on the centres, with terms of a weak prior.
 TEST(SparseRegression, IsRidgeRegressionOverAllSamplesWhereNoneIsOff) {
   RandomStream random(3, "memory");

@@ -102,7 +102,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Burst{1500, 40, 1e6, Where::targets}, Burst{1500, 150, 1e12, Where::both},
                       Burst{1500, 150, 30.0, Where::targets}, Burst{600, 150, 50.0, Where::inputs},
                       Burst{0, 60, 1e6, Where::both}, Burst{0, 20, 1e6, Where::targets},
-                      Burst{0, 150, 1e3, Where::both}, Burst{0, 60, 1e3, Where::inputs}));
+                      Burst{0, 150, 1e3, Where::both}, Burst{0, 60, 1e3, Where::inputs},
+                      // longer than the guard doubts: the axis of before is trusted again
+                      Burst{1500, 250, 1e3, Where::both}, Burst{1500, 300, 1e6, Where::targets}));
 
 TEST(GuardedAxis, NothingSaidIsBeyondWhatWasSeen) {
   Drive drive = testing::drive(3, 2500);
