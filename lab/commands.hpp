@@ -21,6 +21,7 @@ namespace kelpie::lab {
 
 // One function per subcommand, in <name>_command.cpp, as in cli/commands.hpp.
 void add_bench(CLI::App& app);
+void add_benchmark(CLI::App& app);
 void add_control(CLI::App& app);
 void add_reckoning(CLI::App& app);
 void add_diagnose(CLI::App& app);

@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   kelpie::lab::add_reproduce(app);
   kelpie::lab::add_bench(app);
+  kelpie::lab::add_benchmark(app);
   kelpie::lab::add_control(app);
   kelpie::lab::add_reckoning(app);
   kelpie::lab::add_diagnose(app);

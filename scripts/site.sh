@@ -24,15 +24,17 @@ extra=$stage/extra
 mkdir -p "$extra/api"
 scripts/docs.sh "$stage/doxygen" >/dev/null
 mv "$stage/doxygen/html" "$extra/api/cpp"
+PYTHONPATH=$build/python /usr/bin/python3 -m kelpie.benchmark page scripts/site/benchmark.json \
+  --out "$extra/benchmark_results.html"
 
 # The pages keep their places, so that their links hold; the README is the start page.
 pages=$stage/pages
 mkdir -p "$pages"
-git ls-files -z -- '*.md' docs include examples src lab scenarios vehicles scripts CITATION.cff LICENSE |
+git ls-files -z -- '*.md' docs include examples src lab scenarios vehicles scripts python/kelpie/benchmark CITATION.cff LICENSE |
   xargs -0 cp --parents -t "$pages"
 cat "$pages/README.md" scripts/site/contents.md >"$pages/index.md"
 rm -r "$pages/README.md" "$pages/scripts/site"
-cp scripts/site/*_api.md scripts/site/bibliography.md "$pages"
+cp scripts/site/*_api.md scripts/site/bibliography.md scripts/site/benchmark.md "$pages"
 sed -i 's#\(](\(\.\./\)*\)README\.md#\1index.md#; s#](\([./a-z]*\)docs/bibliography\.bib)#](\1bibliography.md)#g' \
   "$pages"/*.md
 find "$pages/docs" "$pages/src" -name '*.md' -exec sed -i \

@@ -43,7 +43,7 @@ std::vector<path> pages_below(const path& folder) {
 // Every page that people read: docs/, READMEs, and the pages at the root.
 std::vector<path> all_pages() {
   std::vector<path> pages{"README.md", "CONTRIBUTING.md", "CHANGELOG.md"};
-  for (const char* folder : {"docs", "src", "include", "lab", "examples"}) {
+  for (const char* folder : {"docs", "src", "include", "lab", "examples", "python"}) {
     const std::vector<path> below = pages_below(folder);
     pages.insert(pages.end(), below.begin(), below.end());
   }
