@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Makes the Debian source package of the last commit and builds its packages in a clean root of
+# Debian 12: lintian reads them, and the tests of debian/tests run with them, installed in another
+# clean root. For arm64 Debian's cross compiler builds (no Python, no MPI, no manual page).
+# Usage: scripts/debian.sh [amd64|arm64] [FOLDER]   (default: this machine's, build/packages)
+# Debian packages: mmdebstrap, dpkg-dev. KELPIE_RUN: a command before the build, as `nice -n 10`.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+here=$(dpkg --print-architecture)
+architecture=${1:-$here} out=${2:-build/packages}
+command -v mmdebstrap dpkg-source >/dev/null ||
+  { echo "Install these first: apt-get install mmdebstrap dpkg-dev" >&2; exit 1; }
+[ -e build/uplot/package ] || { echo "scripts/setup.sh fetches uPlot, which the pages need" >&2; exit 1; }
+stage=$(mktemp -d)
+trap 'rm -rf "$stage"' EXIT
+mkdir -p "$out" build
+out=$(realpath "$out")
+
+# The source package: the last commit, and uPlot where CMake looks for it
+version=$(sed -nE '1s/.*\((.*)\).*/\1/p' debian/changelog)
+source=$stage/kelpie-$version
+git archive --prefix="kelpie-$version/" HEAD | tar -x -C "$stage"
+mkdir -p "$source/build/uplot"
+cp -r build/uplot/package "$source/build/uplot/"
+chmod -R u=rwX,go=rX "$source"
+(cd "$stage" && dpkg-source --build "kelpie-$version" >/dev/null)
+
+build=(dpkg-buildpackage --no-sign -b)
+wanted=(lintian)
+hooks=()
+if [ "$architecture" != "$here" ]; then
+  build=(dpkg-buildpackage --no-sign -B "-a$architecture" -Pcross,nocheck)
+  wanted+=("crossbuild-essential-$architecture")
+  hooks=(--essential-hook="chroot \"\$1\" dpkg --add-architecture $architecture"
+    --essential-hook='chroot "$1" apt-get update -qq')
+fi
+dependencies=(apt-get build-dep --yes -qq --no-install-recommends)
+[ "$architecture" = "$here" ] || dependencies+=("-a$architecture" -Pcross,nocheck)
+
+echo "Building kelpie $version ($architecture) in a clean root"
+# shellcheck disable=SC2016  # $1 is mmdebstrap's root
+mmdebstrap --quiet --variant=buildd --format=null --include="$(IFS=,; echo "${wanted[*]}")" \
+  "${hooks[@]}" \
+  --customize-hook="mkdir -p \"\$1/build\"" \
+  --customize-hook="copy-in $source /build" \
+  --customize-hook="chroot \"\$1\" sh -c 'cd /build/kelpie-$version &&
+    DEBIAN_FRONTEND=noninteractive ${dependencies[*]} ./'" \
+  --customize-hook="${KELPIE_RUN:-} chroot \"\$1\" sh -c 'cd /build/kelpie-$version && ${build[*]}'" \
+  --customize-hook='chroot "$1" sh -c "cd /build && lintian --allow-root --fail-on error,warning *.changes"' \
+  --customize-hook="rm -rf \"\$1/build/kelpie-$version\"" \
+  --customize-hook="sync-out /build $out" \
+  bookworm /dev/null >"build/debian-$architecture.log" 2>&1 || {
+  tail -40 "build/debian-$architecture.log" >&2
+  exit 1
+}
+cp "$stage"/kelpie_"$version".{dsc,tar.xz} "$out"
+
+if [ "$architecture" = "$here" ]; then
+  echo "Installing its packages in another one, and running their tests"
+  # shellcheck disable=SC2016
+  mmdebstrap --quiet --variant=apt --format=null --include=g++,pkg-config \
+    --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
+    --include="$(printf '%s,' "$out"/{kelpie-tools,kelpie-live,kelpie-mpi,kelpie-doc,libkelpie-dev,python3-kelpie}_"$version"_*.deb)" \
+    --customize-hook="copy-in debian/tests /tmp" \
+    --customize-hook='for test in learn python build; do
+      chroot "$1" "/tmp/tests/$test" || { echo "debian/tests/$test failed" >&2; exit 1; }; done' \
+    bookworm /dev/null >"build/debian-tests.log" 2>&1 || { tail -40 build/debian-tests.log >&2; exit 1; }
+fi
+ls -s --block-size=1k "$out" | sed -n "s/^ *\([0-9]*\) \(.*$version.*deb\)/\1 kB \2/p"
