@@ -26,12 +26,12 @@ ROOT = Path(__file__).resolve().parent.parent
 # `copyright` of the packages. Licences of tests and tools beside such parts are left out.
 LICENCES = {
     "bzip2": "bzip2-1.0.6", "cli11": "BSD-3-Clause", "cyclonedds": "EPL-2.0 OR BSD-3-Clause",
-    "eigen3": "MPL-2.0", "fmtlib": "MIT", "gcc-12": "GPL-3.0-or-later WITH GCC-exception-3.1",
+    "eigen3": "MPL-2.0", "fmtlib": "MIT", "gcc": "GPL-3.0-or-later WITH GCC-exception-3.1",
     "glibc": "LGPL-2.1-or-later", "highway": "Apache-2.0", "libmatio": "BSD-2-Clause",
     "libmicrohttpd": "LGPL-2.1-or-later", "libzip": "BSD-3-Clause",
     "libzstd": "BSD-3-Clause OR GPL-2.0-only", "linux": "GPL-2.0-only WITH Linux-syscall-note",
     "lz4": "BSD-2-Clause", "nlohmann-json3": "MIT", "openmpi": "BSD-3-Clause",
-    "openssl": "Apache-2.0", "pybind11": "BSD-3-Clause", "python3.11": "PSF-2.0",
+    "openssl": "Apache-2.0", "pybind11": "BSD-3-Clause", "python3": "PSF-2.0",
     "sqlite3": "blessing", "systemd": "LGPL-2.1-or-later", "tinyxml2": "Zlib",
     "tomlplusplus": "MIT", "yaml-cpp": "MIT", "zlib": "Zlib",
 }
@@ -88,7 +88,7 @@ def described(package: str) -> dict:
     form = "${Package}\t${Version}\t${Architecture}\t${source:Package}\t${Homepage}"
     name, version, architecture, source, home = lines_of(
         "dpkg-query", "-W", "-f", form, package)[0].split("\t")
-    licence = LICENCES.get(source, "NOASSERTION")
+    licence = LICENCES.get(re.sub(r"^(gcc|python3)[-.]\d+$", r"\1", source), "NOASSERTION")
     release = platform.freedesktop_os_release().get("VERSION_ID", "sid")
     entry = {
         "SPDXID": "SPDXRef-" + re.sub(r"[^A-Za-z0-9.-]", "-", name), "name": name,

@@ -16,6 +16,7 @@ packages=(
   pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip python3-build
   python3-pytest python3-sklearn python3-pandas python3-matplotlib python3-distributed
   chromium chromium-driver python3-selenium
+  debhelper dh-python patchelf
 )
 uplot="uplot-1.6.32"
 uplot_sha256=4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d
