@@ -92,9 +92,11 @@ def take_libraries(module: Path) -> None:
     subprocess.run(["strip", "--strip-unneeded", str(module)], check=True)
     replacements = [word for pair in names.items() for word in ("--replace-needed", *pair)]
     for file in [module, *(folder / name for name in names.values())]:
-        own = ["--set-rpath", "$ORIGIN/_libraries"] if file == module else \
-              ["--set-rpath", "$ORIGIN", "--set-soname", file.name]
-        subprocess.run(["patchelf", *own, *replacements, str(file)], check=True)
+        rpath = "$ORIGIN/_libraries" if file == module else "$ORIGIN"
+        soname = [] if file == module else [["--set-soname", file.name]]
+        # One change a call: patchelf 0.14 damages names otherwise.
+        for change in [replacements, *soname, ["--set-rpath", rpath]]:
+            subprocess.run(["patchelf", *change, str(file)], check=True)
 
 
 def take_licence(library: Path, folder: Path) -> None:
