@@ -4,12 +4,13 @@
 # Debian 12: lintian reads them, and the tests of debian/tests run with them, installed in another
 # clean root. For arm64 Debian's cross compiler builds (no Python, no MPI, no manual page).
 # Usage: scripts/debian.sh [amd64|arm64] [FOLDER]   (default: this machine's, build/packages)
-# Debian packages: mmdebstrap, dpkg-dev. KELPIE_RUN: a command before the build, as `nice -n 10`.
+# Debian packages: mmdebstrap, dpkg-dev. For scripts/reproducible.sh: KELPIE_PLACE, the folder in the
+# root where the packages are built; KELPIE_RUN, a command that runs the build, as `nice -n 10`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 here=$(dpkg --print-architecture)
-architecture=${1:-$here} out=${2:-build/packages}
+architecture=${1:-$here} out=${2:-build/packages} place=${KELPIE_PLACE:-/build}
 command -v mmdebstrap dpkg-source >/dev/null ||
   { echo "Install these first: apt-get install mmdebstrap dpkg-dev" >&2; exit 1; }
 [ -e build/uplot/package ] || { echo "scripts/setup.sh fetches uPlot, which the pages need" >&2; exit 1; }
@@ -41,16 +42,16 @@ dependencies=(apt-get build-dep --yes -qq --no-install-recommends)
 
 echo "Building kelpie $version ($architecture) in a clean root"
 # shellcheck disable=SC2016  # $1 is mmdebstrap's root
-mmdebstrap --quiet --variant=buildd --format=null --include="$(IFS=,; echo "${wanted[*]}")" \
+mmdebstrap --quiet --variant=buildd --format=null --dpkgopt=force-unsafe-io --include="$(IFS=,; echo "${wanted[*]}")" \
   "${hooks[@]}" \
-  --customize-hook="mkdir -p \"\$1/build\"" \
-  --customize-hook="copy-in $source /build" \
-  --customize-hook="chroot \"\$1\" sh -c 'cd /build/kelpie-$version &&
+  --customize-hook="mkdir -p \"\$1$place\"" \
+  --customize-hook="copy-in $source $place" \
+  --customize-hook="chroot \"\$1\" sh -c 'cd $place/kelpie-$version &&
     DEBIAN_FRONTEND=noninteractive ${dependencies[*]} ./'" \
-  --customize-hook="${KELPIE_RUN:-} chroot \"\$1\" sh -c 'cd /build/kelpie-$version && ${build[*]}'" \
-  --customize-hook='chroot "$1" sh -c "cd /build && lintian --allow-root --fail-on error,warning *.changes"' \
-  --customize-hook="rm -rf \"\$1/build/kelpie-$version\"" \
-  --customize-hook="sync-out /build $out" \
+  --customize-hook="${KELPIE_RUN:-} chroot \"\$1\" sh -c 'cd $place/kelpie-$version && ${build[*]}'" \
+  --customize-hook="chroot \"\$1\" sh -c 'cd $place && lintian --allow-root --fail-on error,warning *.changes'" \
+  --customize-hook="rm -rf \"\$1$place/kelpie-$version\"" \
+  --customize-hook="sync-out $place $out" \
   bookworm /dev/null >"build/debian-$architecture.log" 2>&1 || {
   tail -40 "build/debian-$architecture.log" >&2
   exit 1
@@ -60,7 +61,7 @@ cp "$stage"/kelpie_"$version".{dsc,tar.xz} "$out"
 if [ "$architecture" = "$here" ]; then
   echo "Installing its packages in another one, and running their tests"
   # shellcheck disable=SC2016
-  mmdebstrap --quiet --variant=apt --format=null --include=g++,pkg-config \
+  mmdebstrap --quiet --variant=apt --format=null --dpkgopt=force-unsafe-io --include=g++,pkg-config \
     --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
     --include="$(printf '%s,' "$out"/{kelpie-tools,kelpie-live,kelpie-mpi,kelpie-doc,libkelpie-dev,python3-kelpie}_"$version"_*.deb)" \
     --customize-hook="copy-in debian/tests /tmp" \
