@@ -3,7 +3,7 @@
 # From a clean Debian 12 to a learned log in two commands, through each door: the Debian package, the
 # wheel, the image. Prints times and sizes (docs/howto/install.md#from-nothing-to-a-learned-log).
 # Usage, as root: scripts/doors.sh FOLDER [WHEEL [IMAGE]]
-# FOLDER has the packages of scripts/debian.sh. Debian packages: mmdebstrap, umoci, curl.
+# FOLDER has the packages of scripts/packages.sh. Debian packages: mmdebstrap, umoci, curl.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

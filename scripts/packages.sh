@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the Debian source package of the last commit and builds its packages in a clean root of
-# Debian 12: lintian reads them, and the tests of debian/tests run with them, installed in another
-# clean root. For arm64 Debian's cross compiler builds (no Python, no MPI, no manual page).
-# Usage: scripts/debian.sh [amd64|arm64] [FOLDER]   (default: this machine's, build/packages)
+# Makes the Debian source package of the last commit and builds its packages, and the portable wheel,
+# in a clean root of Debian 12: lintian reads the packages, and the tests of debian/tests run with
+# them, installed in another clean root. For arm64 Debian's cross compiler builds (no Python, no MPI,
+# no manual page).
+# Usage: scripts/packages.sh [amd64|arm64] [FOLDER]   (default: this machine's, build/packages)
 # Debian packages: mmdebstrap, dpkg-dev. For scripts/reproducible.sh: KELPIE_PLACE, the folder in the
 # root where the packages are built; KELPIE_RUN, a command that runs the build, as `nice -n 10`.
 set -euo pipefail
@@ -29,11 +30,17 @@ chmod -R u=rwX,go=rX "$source"
 (cd "$stage" && dpkg-source --build "kelpie-$version" >/dev/null)
 
 build=(dpkg-buildpackage --no-sign -b)
-wanted=(lintian)
+# The wheel: the same objects, but those that read files of MATLAB (setup.py tells why)
+wheel='export SOURCE_DATE_EPOCH=$(dpkg-parsechangelog -STimestamp) &&
+  cmake -DKELPIE_WITH_MATLAB=OFF build/debian && ninja -C build/debian ${DEB_BUILD_OPTIONS:+-j1} kelpie_python &&
+  KELPIE_PORTABLE=1 KELPIE_BUILD_DIR=build/debian python3 -m pip wheel --no-build-isolation \
+    --no-index --no-deps --wheel-dir .. .'
+wanted=(lintian python3-pip patchelf)
 hooks=()
 if [ "$architecture" != "$here" ]; then
   build=(dpkg-buildpackage --no-sign -B "-a$architecture" -Pcross,nocheck)
-  wanted+=("crossbuild-essential-$architecture")
+  wanted=(lintian "crossbuild-essential-$architecture")
+  wheel=:
   hooks=(--essential-hook="chroot \"\$1\" dpkg --add-architecture $architecture"
     --essential-hook='chroot "$1" apt-get update -qq')
 fi
@@ -45,18 +52,17 @@ echo "Building kelpie $version ($architecture) in a clean root"
 mmdebstrap --quiet --variant=buildd --format=null --dpkgopt=force-unsafe-io --include="$(IFS=,; echo "${wanted[*]}")" \
   "${hooks[@]}" \
   --customize-hook="mkdir -p \"\$1$place\"" \
-  --customize-hook="copy-in $source $place" \
+  --customize-hook="copy-in $source $stage/kelpie_$version.dsc $stage/kelpie_$version.tar.xz $place" \
   --customize-hook="chroot \"\$1\" sh -c 'cd $place/kelpie-$version &&
     DEBIAN_FRONTEND=noninteractive ${dependencies[*]} ./'" \
-  --customize-hook="${KELPIE_RUN:-} chroot \"\$1\" sh -c 'cd $place/kelpie-$version && ${build[*]}'" \
-  --customize-hook="chroot \"\$1\" sh -c 'cd $place && lintian --allow-root --fail-on error,warning *.changes'" \
+  --customize-hook="${KELPIE_RUN:-} chroot \"\$1\" sh -c 'cd $place/kelpie-$version && ${build[*]} && $wheel'" \
+  --customize-hook="chroot \"\$1\" sh -c 'cd $place && lintian --allow-root --fail-on error,warning *.changes *.dsc'" \
   --customize-hook="rm -rf \"\$1$place/kelpie-$version\"" \
   --customize-hook="sync-out $place $out" \
-  bookworm /dev/null >"build/debian-$architecture.log" 2>&1 || {
-  tail -40 "build/debian-$architecture.log" >&2
+  bookworm /dev/null >"build/packages-$architecture.log" 2>&1 || {
+  tail -40 "build/packages-$architecture.log" >&2
   exit 1
 }
-cp "$stage"/kelpie_"$version".{dsc,tar.xz} "$out"
 
 if [ "$architecture" = "$here" ]; then
   echo "Installing its packages in another one, and running their tests"
@@ -67,6 +73,6 @@ if [ "$architecture" = "$here" ]; then
     --customize-hook="copy-in debian/tests /tmp" \
     --customize-hook='for test in learn python build; do
       chroot "$1" "/tmp/tests/$test" || { echo "debian/tests/$test failed" >&2; exit 1; }; done' \
-    bookworm /dev/null >"build/debian-tests.log" 2>&1 || { tail -40 build/debian-tests.log >&2; exit 1; }
+    bookworm /dev/null >"build/packages-tests.log" 2>&1 || { tail -40 build/packages-tests.log >&2; exit 1; }
 fi
-ls -s --block-size=1k "$out" | sed -n "s/^ *\([0-9]*\) \(.*$version.*deb\)/\1 kB \2/p"
+ls -s --block-size=1k "$out" | sed -n "s/^ *\([0-9]*\) \(.*$version.*\\.\(deb\|whl\)\)/\1 kB \2/p"
