@@ -35,7 +35,7 @@ LICENCES = {
     "sqlite3": "blessing", "systemd": "LGPL-2.1-or-later", "tinyxml2": "Zlib",
     "tomlplusplus": "MIT", "yaml-cpp": "MIT", "zlib": "Zlib",
 }
-TOOLCHAIN = re.compile(r"gcc-\d+|glibc|linux")
+TOOLCHAIN = re.compile(r"gcc-\d+|glibc|linux|cross-toolchain-base")
 PLUGIN = "kelpie_mpi.dir"  # a file of its own
 
 
@@ -88,7 +88,7 @@ def described(package: str) -> dict:
     form = "${Package}\t${Version}\t${Architecture}\t${source:Package}\t${Homepage}"
     name, version, architecture, source, home = lines_of(
         "dpkg-query", "-W", "-f", form, package)[0].split("\t")
-    licence = LICENCES.get(re.sub(r"^(gcc|python3)[-.]\d+$", r"\1", source), "NOASSERTION")
+    licence = LICENCES.get(re.sub(r"^(gcc|python3)[-.]\d+(-cross)?$", r"\1", source), "NOASSERTION")
     release = platform.freedesktop_os_release().get("VERSION_ID", "sid")
     entry = {
         "SPDXID": "SPDXRef-" + re.sub(r"[^A-Za-z0-9.-]", "-", name), "name": name,

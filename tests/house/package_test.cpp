@@ -105,5 +105,20 @@ TEST(Package, DebianHasWhatCMakeLooksFor) {
   EXPECT_TRUE(names(control, "pybind11-dev"));
 }
 
+TEST(Package, OneVersionStandsEverywhere) {
+  const auto found = [](const char* file, const char* pattern) {
+    std::smatch match;
+    const std::string text = house_test::text_of(house_test::kRoot / file);
+    return std::regex_search(text, match, std::regex(pattern)) ? match.str(1) : file;
+  };
+  const std::string version = found("CMakeLists.txt", R"(project\(kelpie VERSION ([0-9.]+))");
+  EXPECT_EQ(found("CITATION.cff", R"(\nversion: ([0-9.]+))"), version);
+  EXPECT_EQ(found("package.xml", R"(<version>([0-9.]+)<)"), version);
+  EXPECT_EQ(found("debian/changelog", R"(^kelpie \(([0-9.]+)\))"), version);
+  EXPECT_EQ(found("CHANGELOG.md", R"(\n## ([0-9.]+))"), version);
+  EXPECT_EQ(found("README.md", R"(find_package\(kelpie ([0-9.]+))"),
+            version.substr(0, version.rfind('.')));
+}
+
 }  // namespace
 }  // namespace kelpie::package_test
