@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The bill of materials; the manual page, which help2man makes of `kelpie --help-all` and kelpie.h2m, and the completions,
-# which kelpie prints itself. The latter two have to run kelpie.
+# Bills of materials; the manual page, which help2man makes of `kelpie --help-all` and kelpie.h2m; the
+# completions, which kelpie prints itself. Manual and completions have to run kelpie.
 find_package(Python3 QUIET COMPONENTS Interpreter)
 find_program(DPKG_QUERY dpkg-query)
 

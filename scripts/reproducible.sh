@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Builds the last commit's Debian packages and the wheel twice (scripts/packages.sh): in folders of
-# other names and lengths, at other times, in another time zone. Tells which files have the same bytes;
-# exit code 1 where one differs (`diffoscope A B` shows how).
-# Usage: scripts/reproducible.sh [FOLDER]   (default: build/reproducible; FOLDER/a/ of an earlier run is
-# the first build)
+# other names and lengths, at other times, in another time zone. Tells which files have the same
+# bytes; exit code 1 where one differs (`diffoscope A B` shows how).
+# Usage: scripts/reproducible.sh [FOLDER]   (default: build/reproducible; FOLDER/a/ of an earlier run
+# is the first build)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -41,7 +41,8 @@ PLUGIN = "kelpie_mpi.dir"  # a file of its own
 
 def lines_of(*command: str, may_fail: bool = False) -> list[str]:
     """What a command prints."""
-    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
+    done = subprocess.run(command, capture_output=True, text=True,
+                          env={**os.environ, "LC_ALL": "C"})
     if done.returncode != 0 and not may_fail:
         raise SystemExit(f"{' '.join(command[:4])}: {done.stderr.strip()}")
     return done.stdout.splitlines()
@@ -128,7 +129,8 @@ def document(build: Path, file: Path) -> dict:
     module = file.name.startswith("_kelpie")
     rooms = ("src/library/", "src/logs/", "src/tools/", "python/" if module else "src/live/")
     linked = sorted(map(described, packages_of(libraries_of(file))), key=lambda p: p["name"])
-    included = sorted(map(described, packages_of(headers_of(build, rooms))), key=lambda p: p["name"])
+    included = sorted(map(described, packages_of(headers_of(build, rooms))),
+                      key=lambda p: p["name"])
     bundled = uplot(build)
     name = "python3-kelpie" if module else file.name
     own = {"SPDXID": "SPDXRef-kelpie", "name": name, "versionInfo": version,

@@ -108,9 +108,10 @@ def test_a_portable_wheel_needs_the_c_library_and_numpy_alone(build_dir, source,
         if shutil.which(tool) is None:
             pytest.skip(f"there is no {tool}")
     (tmp_path / "quick.cfg").write_text("[bdist_wheel]\ncompression = stored\n")
-    subprocess.run([*PIP, "wheel", "--quiet", *OFFLINE, "--wheel-dir", tmp_path, source], check=True,
-                   env={**os.environ, "KELPIE_BUILD_DIR": str(build_dir), "KELPIE_PORTABLE": "1",
-                        "DIST_EXTRA_CONFIG": str(tmp_path / "quick.cfg")})
+    environment = {**os.environ, "KELPIE_BUILD_DIR": str(build_dir), "KELPIE_PORTABLE": "1",
+                   "DIST_EXTRA_CONFIG": str(tmp_path / "quick.cfg")}
+    subprocess.run([*PIP, "wheel", "--quiet", *OFFLINE, "--wheel-dir", tmp_path, source],
+                   check=True, env=environment)
     wheel, = tmp_path.glob("kelpie-*.whl")
     libc = platform.libc_ver()[1].replace(".", "_")
     assert wheel.name.endswith(f"-manylinux_{libc}_{platform.machine()}.whl")
