@@ -1,6 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-# The manual page, which help2man makes of `kelpie --help-all` and kelpie.h2m, and the completions,
-# which kelpie prints itself. All of them have to run kelpie.
+# Bills of materials; the manual page, which help2man makes of `kelpie --help-all` and kelpie.h2m; the
+# completions, which kelpie prints itself. Manual and completions have to run kelpie.
+find_package(Python3 QUIET COMPONENTS Interpreter)
+find_program(DPKG_QUERY dpkg-query)
+
+# kelpie_bill(TARGET COMPONENT NAME): installs the bill of materials of a target, which
+# scripts/sbom.py makes where packages of Debian are known: not of libraries in a folder of their own.
+function(kelpie_bill target component name)
+  if(NOT Python3_Interpreter_FOUND OR NOT DPKG_QUERY OR CMAKE_TOOLCHAIN_FILE)
+    message(STATUS "kelpie: no bill of materials of ${target}, which needs Python and dpkg")
+    return()
+  endif()
+  set(bill "${generated_dir}/${name}.spdx.json")
+  add_custom_command(OUTPUT "${bill}"
+    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/scripts/sbom.py" "${PROJECT_BINARY_DIR}"
+            "$<TARGET_FILE:${target}>" "${bill}"
+    DEPENDS ${target} "${PROJECT_SOURCE_DIR}/scripts/sbom.py" VERBATIM)
+  add_custom_target(${target}_bill ALL DEPENDS "${bill}")
+  set(maybe)
+  if(component STREQUAL "python")
+    set(maybe EXCLUDE_FROM_ALL)
+  endif()
+  install(FILES "${bill}" DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie" COMPONENT ${component}
+          ${maybe})
+endfunction()
+kelpie_bill(kelpie_cli runtime kelpie)
+if(KELPIE_BUILD_PYTHON)
+  kelpie_bill(kelpie_python python python3-kelpie)
+endif()
 if(CMAKE_CROSSCOMPILING)
   message(STATUS "kelpie: a cross build has neither manual page nor completions")
   return()
@@ -16,10 +43,6 @@ install(FILES "${generated_dir}/completion.bash" RENAME kelpie COMPONENT runtime
         DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
 install(FILES "${generated_dir}/completion.zsh" RENAME _kelpie COMPONENT runtime
         DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")
-# Debian's zsh looks elsewhere.
-install(FILES "${generated_dir}/completion.zsh" RENAME _kelpie
-        DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions"
-        COMPONENT debian_kelpie-tools EXCLUDE_FROM_ALL)
 
 find_program(HELP2MAN help2man)
 if(HELP2MAN)

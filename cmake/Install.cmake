@@ -2,7 +2,7 @@
 # Where `cmake --install` puts files, and how other projects find them. Components: development (the
 # libraries kelpie and kelpie-logs, headers, files for CMake and pkg-config), runtime (the command,
 # manual, completions, scenarios, vehicles), service (the service of `kelpie live`), mpi (the plug-in
-# for many machines), lab (kelpie-lab; in no Debian package).
+# for many machines), lab (kelpie-lab; in no Debian package), and, for Debian alone, python.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kelpie")
@@ -56,6 +56,10 @@ if(KELPIE_BUILD_TOOLS)
   include("${CMAKE_CURRENT_LIST_DIR}/Documents.cmake")
 endif()
 
-if(KELPIE_BUILD_TOOLS AND PROJECT_IS_TOP_LEVEL)
-  include(cmake/Package.cmake)
+if(KELPIE_BUILD_PYTHON)  # where Debian's Python looks; elsewhere pip installs the package
+  set(python_folder lib/python3/dist-packages/kelpie)
+  install(TARGETS kelpie_python LIBRARY DESTINATION "${python_folder}"
+          COMPONENT python EXCLUDE_FROM_ALL)
+  install(DIRECTORY python/kelpie/ DESTINATION "${python_folder}"
+          COMPONENT python EXCLUDE_FROM_ALL PATTERN __pycache__ EXCLUDE)
 endif()

@@ -58,21 +58,6 @@ echo "Building kelpie (arm64)"
 [ $# -gt 0 ] || set -- all
 quietly cmake --preset arm64
 quietly cmake --build --preset arm64 --target "$@"
-if [ "$*" = all ]; then
-  echo "Making its packages in build/arm64/packages"
-  packages=build/arm64/packages
-  quietly cpack --config build/arm64/CPackConfig.cmake -G DEB -B "$packages"
-  # Nobody but us can tell cpack what a program of another machine depends on.
-  depends=$(dpkg-deb -f "$packages"/kelpie-tools_*_arm64.deb Depends)
-  for file in $(aarch64-linux-gnu-readelf -d build/arm64/kelpie | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p'); do
-    for package in "$root"/apt/archives/*.deb; do
-      if dpkg-deb -c "$package" | grep "/$file " >/dev/null; then
-        name=$(dpkg-deb -f "$package" Package)
-        grep -qw "$name" <<<"$depends" || { echo "kelpie-tools doesn't depend on $name" >&2; exit 1; }
-      fi
-    done
-  done
-fi
 # run_tests OPTION...: programs that weren't built have no tests but a place holder.
 run_tests() { ctest --preset arm64 --parallel "$(nproc)" --exclude-regex '_NOT_BUILT$' "$@"; }
 echo "Running its tests under qemu"

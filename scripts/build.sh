@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 preset=${1:-release}
 shift || true
 [ $# -gt 0 ] || set -- all
-scripts/setup.sh
+scripts/setup.sh "$preset"
 mkdir -p build
 log=build/$preset.log
 echo "Building kelpie ($preset)"

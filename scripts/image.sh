@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes an OCI image of `kelpie live` with its page, for a vehicle's companion computer; the labels
 # are those of a BlueOS extension (docs/howto/bluerov2.md). Everything in the image is a Debian package:
-#   cpack -G DEB in the build folder
-#   scripts/image.sh kelpie-tools_0.2.0_amd64.deb out/image
+#   scripts/packages.sh
+#   scripts/image.sh build/packages/kelpie-tools_*.deb out/image
 # Needs root and the Debian packages mmdebstrap, umoci and dpkg; for another architecture
 # qemu-user-static and binfmt-support as well. The architecture is the package's.
 set -euo pipefail

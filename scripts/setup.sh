@@ -3,20 +3,29 @@
 # Installs what is missing of the Debian 12 packages that kelpie is built and tested with, and puts
 # uPlot, which draws the figures of its pages and which Debian 12 has no package of, into
 # build/uplot. Quick and silent when nothing is missing.
+# Usage: scripts/setup.sh [PRESET]   (user, minimal, library: without what only developers need)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(
-  g++ cmake ninja-build pkg-config
-  libeigen3-dev libhwy-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libsvm-dev
+  g++ cmake ninja-build pkg-config help2man
+  libeigen3-dev libhwy-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev libyaml-cpp-dev zlib1g-dev libsystemd-dev
-  libzip-dev libtinyxml2-dev
-  cyclonedds-dev libmicrohttpd-dev libssl-dev libmatio-dev libopenmpi-dev openmpi-bin
-  libgtest-dev librapidcheck-dev libfastrtps-dev libfastcdr-dev doxygen help2man
-  pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip python3-build
-  python3-pytest python3-sklearn python3-pandas python3-matplotlib python3-distributed
-  chromium chromium-driver python3-selenium
+  libzip-dev libtinyxml2-dev cyclonedds-dev libmicrohttpd-dev libssl-dev libmatio-dev
 )
+case ${1:-} in
+  user | minimal | library) ;;
+  *)
+    packages+=(
+      libsvm-dev libopenmpi-dev openmpi-bin
+      libgtest-dev librapidcheck-dev libfastrtps-dev libfastcdr-dev doxygen
+      pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip python3-build
+      python3-pytest python3-sklearn python3-pandas python3-matplotlib python3-distributed
+      chromium chromium-driver python3-selenium
+      debhelper dh-python patchelf libxml2-utils
+    )
+    ;;
+esac
 uplot="uplot-1.6.32"
 uplot_sha256=4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d
 

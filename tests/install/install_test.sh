@@ -129,9 +129,30 @@ if command -v cc >/dev/null; then
     fail "a model.json says something else in C"
 fi
 
-# Debian packages
-if command -v dpkg-deb >/dev/null && command -v dpkg-shlibdeps >/dev/null; then
-  run cpack -G DEB --config "$build/CPackConfig.cmake" -B "$stage/deb"
+# Presets of users need nothing of developers.
+for preset in user minimal library; do
+  run cmake -S "$source" --preset "$preset" -B "$stage/$preset"
+  grep -qx 'KELPIE_BUILD_TESTS:BOOL=OFF' "$stage/$preset/CMakeCache.txt" || fail "$preset builds tests"
+  ! grep -qE '^KELPIE_(BUILD_(LAB|PYTHON|EXAMPLES)|WITH_MPI):BOOL=ON' "$stage/$preset/CMakeCache.txt" ||
+    fail "$preset builds what is for developers"
+done
+ninja -C "$stage/library" -t targets all >"$stage/log"
+! grep -qE '^(kelpie_cli|kelpie_logs):' "$stage/log" || fail "the preset library builds more"
+
+# The bill of materials
+bill=$prefix/share/kelpie/kelpie.spdx.json
+if [ -e "$bill" ]; then
+  run /usr/bin/python3 -B "$source/tests/install/bill_test.py" "$bill" "$version" \
+    libeigen3-dev libhwy1 nlohmann-json3-dev libsqlite3-0 libstdc++6
+fi
+
+# Debian packages, made of this build by the rules of the source package
+if command -v dpkg-buildpackage >/dev/null && command -v dh_python3 >/dev/null; then
+  mkdir -p "$stage/deb/kelpie"
+  cp -r "$source"/{debian,docs,examples,README.md,CHANGELOG.md} "$stage/deb/kelpie"
+  (cd "$stage/deb/kelpie" && run env KELPIE_BUILD_DIR="$build" DPKG_DEB_COMPRESSOR_TYPE=none \
+    dpkg-buildpackage -b -d -nc --no-sign)
+  grep -q "^kelpie ($version) " "$source/debian/changelog" || fail "debian/changelog is of another version"
   for package in libkelpie-dev kelpie-tools kelpie-live; do
     deb=$(find "$stage/deb" -maxdepth 1 -name "${package}_*.deb")
     dpkg-deb -c "$deb" >"$stage/$package"

@@ -2,7 +2,10 @@
 """pip install and python3 -m build work, here with the module that is already built."""
 
 import importlib.util
+import json
 import os
+import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -13,7 +16,7 @@ import pytest
 from conftest import SOURCE_DIR
 
 TAKEN = ["CMakeLists.txt", "LICENSE", "MANIFEST.in", "pyproject.toml", "setup.py", "cmake",
-         "include", "python", "src", "docs/howto/python.md"]
+         "include", "python", "src", "docs/howto/python.md", "scripts/sbom.py"]
 PIP = [sys.executable, "-m", "pip"]
 OFFLINE = ["--no-build-isolation", "--no-index", "--no-deps"]
 
@@ -22,6 +25,7 @@ OFFLINE = ["--no-build-isolation", "--no-index", "--no-deps"]
 def source(tmp_path):
     folder = tmp_path / "source"
     (folder / "docs/howto").mkdir(parents=True)
+    (folder / "scripts").mkdir()
     for name in TAKEN:
         copy = shutil.copytree if (SOURCE_DIR / name).is_dir() else shutil.copy
         copy(SOURCE_DIR / name, folder / name)
@@ -97,3 +101,47 @@ esac
     assert "-DKELPIE_JOIN_SOURCES=ON" in configure
     assert f"compiling on {cores} core(s)" in done.stdout
     assert list((tmp_path / "wheels").glob("kelpie-*.whl"))
+
+
+def test_a_portable_wheel_needs_the_c_library_and_numpy_alone(build_dir, source, tmp_path):
+    for tool in ("patchelf", "dpkg-query", "ninja"):
+        if shutil.which(tool) is None:
+            pytest.skip(f"there is no {tool}")
+    (tmp_path / "quick.cfg").write_text("[bdist_wheel]\ncompression = stored\n")
+    environment = {**os.environ, "KELPIE_BUILD_DIR": str(build_dir), "KELPIE_PORTABLE": "1",
+                   "DIST_EXTRA_CONFIG": str(tmp_path / "quick.cfg")}
+    subprocess.run([*PIP, "wheel", "--quiet", *OFFLINE, "--wheel-dir", tmp_path, source],
+                   check=True, env=environment)
+    wheel, = tmp_path.glob("kelpie-*.whl")
+    libc = platform.libc_ver()[1].replace(".", "_")
+    assert wheel.name.endswith(f"-manylinux_{libc}_{platform.machine()}.whl")
+    site = tmp_path / "site"
+    with zipfile.ZipFile(wheel) as opened:
+        opened.extractall(site)
+    libraries = {file.name for file in (site / "kelpie/_libraries").glob("*.so*")}
+    module, = (site / "kelpie").glob("_kelpie.*.so")
+    common = re.compile(r"(ld-linux|lib(c|m|gcc_s|stdc\+\+|resolv|asan|ubsan)\.so)")
+    for file in [module, *(site / "kelpie/_libraries").glob("*.so*")]:
+        told = subprocess.run(["readelf", "-d", file], check=True, text=True,
+                              stdout=subprocess.PIPE).stdout
+        needed = re.findall(r"\(NEEDED\).*\[(.*)\]", told)
+        assert {name for name in needed if not common.match(name)} <= libraries, file
+        assert re.findall(r"\(RUNPATH\).*\[(.*)\]", told) in (
+            ["$ORIGIN/_libraries"], ["$ORIGIN"]), file
+        newest = max((tuple(map(int, version.split("."))) for version in re.findall(
+            r"GLIBC_(2\.\d+)", subprocess.run(["readelf", "-V", file], check=True, text=True,
+                                               stdout=subprocess.PIPE).stdout)), default=(2, 0))
+        assert newest <= tuple(map(int, libc.split("_"))), file
+    assert {file.name for file in (site / "kelpie/_libraries").glob("*.copyright")} >= {
+        "libhwy1.copyright", "libsqlite3-0.copyright"}
+    bill, = site.glob("kelpie-*.dist-info/sboms/kelpie.spdx.json")
+    assert "pybind11-dev" in {p["name"] for p in json.loads(bill.read_text())["packages"]}
+    script = f"""
+import kelpie, numpy
+X = numpy.random.default_rng(1).standard_normal((300, 2))
+assert kelpie.OnlineSVR().fit(X, X[:, 0]).score(X, X[:, 0]) > 0.9
+maps = open("/proc/self/maps").read()
+assert "{site}/kelpie/_libraries/libsqlite3-" in maps and "/libsqlite3.so" not in maps
+"""
+    subprocess.run([sys.executable, "-B", "-c", script], check=True,
+                   env={**os.environ, "PYTHONPATH": str(site)})

@@ -11,9 +11,11 @@
 #include <array>
 #include <cmath>
 #include <cstdarg>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -360,6 +362,24 @@ TEST(Fmu, TheDescriptionNamesEveryVariableAtItsReference) {
               fmu::model_description(fmu::Vehicle(boat()), "", {.units = {{"w", Unit{}}}});
             }).substr(0, 7),
             "--units");
+}
+
+TEST(Fmu, TheDescriptionFollowsTheSchemaOfTheStandard) {
+  if (std::system("command -v xmllint >/dev/null") != 0) {  // NOLINT: the test's own words
+    GTEST_SKIP() << "there is no xmllint";
+  }
+  const TemporaryFolder folder;
+  const std::string file = (folder / "modelDescription.xml").string();
+  const std::string check = std::string("xmllint --noout --schema '") + KELPIE_SOURCE_DIR +
+                            "/tests/tools/fmu/co_simulation.xsd' '" + file + "' 2>/dev/null";
+  const std::map<std::string, Unit> units{{"u", Unit::parse("m/s")}, {"th1", Unit::parse("rev/s")}};
+  std::string text = fmu::model_description(fmu::Vehicle(boat()), "", {.units = units});
+  std::ofstream(file) << text;
+  EXPECT_EQ(std::system(check.c_str()), 0) << text;  // NOLINT: the test's own words
+  const std::size_t place = text.find("causality=\"input\"");
+  ASSERT_NE(place, std::string::npos);
+  std::ofstream(file) << text.replace(place, 17, "causality=\"given\"");
+  EXPECT_NE(std::system(check.c_str()), 0);  // NOLINT: the test's own words
 }
 
 TEST(Fmu, TheSameModelGivesTheSameBytes) {
