@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kCheckS = 5.0;     // between identifications
 constexpr double kShortestS = 5.0;  // a manoeuvre
+constexpr double kStricter = 0.8;   // of the wanted share
 constexpr double kStickS = 0.5;     // lag of a pilot's hand, as vehicle::Pilot's
 constexpr int kMostTries = 200;     // of a draw that leaves the bounds
 constexpr double kSmaller = 0.97;   // of the amplitude after such a draw
@@ -189,15 +190,7 @@ class StudiedDrive {
     study::DriveBounds bounds = plan_.bounds;
     bounds.time_s = std::min(plan_.leg_s, plan_.bounds.time_s - driven_s());
     if (driver_ == Driver::planned) {
-      const study::DriveGoal goal =
-          study::telling_goal(expected, study::wanted_places(expected.now(), plan_.tell),
-                              plan_.share, [&](PlanarFit& fit) { scale_by_thrust(fit, known_); });
-      const study::DrivePlan leg = study::plan_drive(expected.now(), push, bounds, goal,
-                                                     1.0 / plan_.scenario.rate_hz, log_.motion());
-      for (const study::Manoeuvre& manoeuvre : leg.manoeuvres) {
-        drive(manoeuvre);
-      }
-      note_expected(leg);
+      drive_plan(expected, push, bounds);
       return;
     }
     study::PossibleVehicles possible(expected.now(), bounds, log_.motion());
@@ -206,6 +199,29 @@ class StudiedDrive {
       left_s -= manoeuvre.duration_s();
       drive(manoeuvre);
     }
+  }
+
+  // Where the plan expects that all is told but identify does not say so, more is asked of it. A
+  // vehicle that would coast out of the bounds has no plan, and rests.
+  void drive_plan(const ExpectedPlanarFit& expected, const study::PlanarPush& push,
+                  const study::DriveBounds& bounds) {
+    study::DrivePlan leg;
+    try {
+      for (double share = plan_.share; leg.manoeuvres.empty(); share *= kStricter) {
+        const study::DriveGoal goal =
+            study::telling_goal(expected, study::wanted_places(expected.now(), plan_.tell), share,
+                                [&](PlanarFit& fit) { scale_by_thrust(fit, known_); });
+        leg = study::plan_drive(expected.now(), push, bounds, goal, 1.0 / plan_.scenario.rate_hz,
+                                log_.motion());
+      }
+    } catch (const InputError&) {
+      drive({"rest", {{kShortestS, std::vector<double>(range_.most.size(), 0.0)}}});
+      return;
+    }
+    for (const study::Manoeuvre& manoeuvre : leg.manoeuvres) {
+      drive(manoeuvre);
+    }
+    note_expected(leg);
   }
 
   study::Manoeuvre free_manoeuvre(study::PossibleVehicles& possible,
@@ -219,7 +235,7 @@ class StudiedDrive {
       }
       amplitude *= kSmaller;
     }
-    return {"rest", {{5.0, std::vector<double>(range_.most.size(), 0.0)}}};
+    return {"rest", {{kShortestS, std::vector<double>(range_.most.size(), 0.0)}}};
   }
 
   void drive(const study::Manoeuvre& manoeuvre) {

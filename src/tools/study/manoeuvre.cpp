@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array<const char*, kPlanarAxes> kPushNames{"surge", "sway", "yaw"};
 constexpr std::array kAmplitudes{0.4, 0.7, 1.0};
-constexpr std::array kPeriodsS{5.0, 10.0, 20.0, 40.0};
+constexpr std::array kPeriodsS{5.0, 10.0, 20.0};
 constexpr std::array kHoldsS{1.5, 3.0, 6.0};  // shortest hold of a pseudo-random sequence
 constexpr double kSequenceS = 18.0;
 constexpr std::uint64_t kSequences = 3;
