@@ -150,9 +150,8 @@ std::string drive_verdict(const format::PlannedDrive& drive) {
   const study::DrivePlan& plan = drive.plan;
   std::string text = drive_headline(drive) + "\n";
   text += fmt::format(
-      "{} manoeuvre{}; at most {:.1f} m from the start (bound {:g}) and {:.2f} m/s (bound {:g}), "
-      "by "
-      "all\nvehicles that the log allows\n\n",
+      "{} manoeuvre{}; at most {:.1f} m from the start (bound {:g}) and {:.2f} m/s (bound {:g}),\n"
+      "by all vehicles that the log allows\n\n",
       plan.manoeuvres.size(), plan.manoeuvres.size() == 1 ? "" : "s", plan.farthest_m,
       drive.bounds.radius_m, plan.fastest_m_s, drive.bounds.speed_m_s);
   text += chart::table_text(numbers_view(drive));
