@@ -28,8 +28,10 @@ constexpr std::int64_t kControlTicks = 10;
 
 vehicle::Configuration configuration_of(Mishap mishap) {
   vehicle::Configuration configuration;
-  if (mishap == Mishap::thruster) {
+  if (mishap == Mishap::thruster || mishap == Mishap::outage_thruster) {
     configuration.effectiveness(vehicle::kSurgeRight) = 0.5;
+  } else if (mishap == Mishap::weak_thruster) {
+    configuration.effectiveness(vehicle::kSurgeRight) = 0.2;
   } else if (mishap == Mishap::payload) {
     configuration.damping_factor.setConstant(1.3);
     configuration.payload.mass_kg = 20.0;
@@ -70,14 +72,15 @@ class Swimming {
             -std::atan2(to_world(1, 0), to_world(0, 0))};
   }
 
-  Sensed sense() {
+  Sensed sense(bool silent = false) {
     const vehicle::State& state = simulator_.state();
     const double x = kPositionNoise * noise_.normal();
     const double y = kPositionNoise * noise_.normal();
     return {.time_s = static_cast<double>(periods_) * kControlPeriodS,
             .pose = pose() + Pose2(x, y, kHeadingNoise * noise_.normal()),
             .velocity = sensors_.measure(vehicle::planar_flu(state.velocity)),
-            .rotors_rps = state.rotors_rps.head<3>()};
+            .rotors_rps = state.rotors_rps.head<3>(),
+            .silent = silent};
   }
 
   void drive(const Eigen::Vector3d& commands) {
@@ -168,8 +171,21 @@ std::string mishap_name(Mishap mishap) {
       return "payload";
     case Mishap::current:
       return "current";
+    case Mishap::weak_thruster:
+      return "weak thruster";
+    case Mishap::outage:
+      return "outage";
+    case Mishap::outage_thruster:
+      return "outage after damage";
+    case Mishap::outage_current:
+      return "outage in a current";
   }
   return {};
+}
+
+bool has_outage(Mishap mishap) {
+  return mishap == Mishap::outage || mishap == Mishap::outage_thruster ||
+         mishap == Mishap::outage_current;
 }
 
 MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& mission,
@@ -183,6 +199,8 @@ MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& miss
   }
   const MissionTimes& times = mission.times;
   const double happens_s = times.settle_s + times.before_s;
+  const bool outage = has_outage(mission.mishap);
+  const double changes_s = outage ? times.settle_s : happens_s;
   bool happened = false;
   MeanSquare before;
   MeanSquare during;
@@ -191,15 +209,16 @@ MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& miss
   const auto periods = static_cast<std::int64_t>(std::llround(times.all_s() / kControlPeriodS));
   for (std::int64_t k = 0; k < periods; ++k) {
     const double t = static_cast<double>(k) * kControlPeriodS;
-    if (!happened && t >= happens_s) {
+    if (!happened && t >= changes_s) {
       happened = true;
       swimming.become(mission.mishap);
-      if (mission.mishap == Mishap::current) {
+      if (mission.mishap == Mishap::current || mission.mishap == Mishap::outage_current) {
         swimming.set_current(current_towards(from + (station ? 0.5 * std::numbers::pi : 0.0)),
                              mission.mishap);
       }
     }
-    const Sensed sensed = swimming.sense();
+    const Sensed sensed =
+        swimming.sense(outage && t >= happens_s && t < happens_s + times.during_s);
     const double error = (path.reference().pose - swimming.pose()).head<2>().norm();
     if (t >= times.settle_s) {
       (t < happens_s ? before : t < happens_s + times.during_s ? during : after).add(error);

@@ -16,12 +16,18 @@ namespace kelpie::lab {
 /// A change of the vehicle or the water in the middle of a mission.
 enum class Mishap {
   none,
-  thruster,  ///< the right surge thruster gives half its force
-  payload,   ///< 20 kg in weight and buoyancy, 0.2 m ahead, and 30 % more drag
-  current,   ///< a current of 0.08 m/s sets in, from a random direction
+  thruster,         ///< the right surge thruster gives half its force
+  payload,          ///< 20 kg in weight and buoyancy, 0.2 m ahead, and 30 % more drag
+  current,          ///< a current of 0.08 m/s sets in, from a random direction
+  weak_thruster,    ///< the right surge thruster gives a fifth of its force
+  outage,           ///< velocity log and position are silent for MissionTimes::during_s
+  outage_thruster,  ///< the same; the right surge thruster gives half since the scores began
+  outage_current,   ///< the same; the current has been there since the scores began
 };
-inline constexpr std::array kMishaps{Mishap::none, Mishap::thruster, Mishap::payload,
-                                     Mishap::current};
+inline constexpr std::array kMishaps{
+    Mishap::none,          Mishap::thruster, Mishap::payload,         Mishap::current,
+    Mishap::weak_thruster, Mishap::outage,   Mishap::outage_thruster, Mishap::outage_current};
+bool has_outage(Mishap mishap);
 std::string mishap_name(Mishap mishap);
 
 /// Lengths of a mission [s].

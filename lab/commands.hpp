@@ -27,6 +27,7 @@ void add_reckoning(CLI::App& app);
 void add_diagnose(CLI::App& app);
 void add_hostile(CLI::App& app);
 void add_identify(CLI::App& app);
+void add_plan(CLI::App& app);
 void add_reproduce(CLI::App& app);
 
 /// Adds --seed (the first seed), --threads, and --out (the folder of <name>.json).

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "chart/text_table.hpp"
+#include "core/text.hpp"
 #include "jobs/run_all.hpp"
+#include "kelpie/core/error.hpp"
 #include "lab/closed_loop.hpp"
 #include "lab/commands.hpp"
 #include "lab/controllers.hpp"
@@ -25,18 +27,22 @@ namespace {
 
 // The controllers.
 enum class ControllerKind {
-  pid,           // (a)
-  feed_forward,  // (b)
-  learned,       // (c)
-  adaptive,      // (d)
+  pid,                  // (a)
+  feed_forward,         // (b)
+  learned,              // (c)
+  adaptive,             // (d)
+  reallocated,          // (e)
+  learned_reallocated,  // (f)
 };
-inline constexpr std::array kControllers{ControllerKind::pid, ControllerKind::feed_forward,
-                                         ControllerKind::learned, ControllerKind::adaptive};
+inline constexpr std::array kControllers{
+    ControllerKind::pid,      ControllerKind::feed_forward, ControllerKind::learned,
+    ControllerKind::adaptive, ControllerKind::reallocated,  ControllerKind::learned_reallocated};
 
 // The plan of a study: vehicle, seeds and lengths of the missions.
 struct ControlPlan {
   vehicle::VehicleParameters vehicle;
   std::size_t seeds = 5;
+  std::vector<Mishap> mishaps{kMishaps.begin(), kMishaps.end()};
   std::uint64_t first_seed = 1;
   MissionTimes times{};
   double commissioning_s = 600.0;  // learning time of (c) before its missions
@@ -72,6 +78,10 @@ std::unique_ptr<Controller> make_controller(ControllerKind kind, const NominalMo
       return make_learned(nominal, learned);
     case ControllerKind::adaptive:
       return make_adaptive(nominal);
+    case ControllerKind::reallocated:
+      return make_pid(nominal, true, learned.diagnosis());
+    case ControllerKind::learned_reallocated:
+      return make_learned(nominal, learned, true);
   }
   return nullptr;
 }
@@ -90,6 +100,10 @@ std::string controller_name(ControllerKind kind) {
       return "(c) PID, learned model";
     case ControllerKind::adaptive:
       return "(d) adaptive";
+    case ControllerKind::reallocated:
+      return "(e) nominal, re-allocated";
+    case ControllerKind::learned_reallocated:
+      return "(f) learned, re-allocated";
   }
   return {};
 }
@@ -141,7 +155,7 @@ ControlResult run_control(const ControlPlan& plan) {
   ControlResult result{
       .seeds = plan.seeds, .first_seed = plan.first_seed, .times = plan.times, .cases = {}};
   for (const PathKind path : kPaths) {
-    for (const Mishap mishap : kMishaps) {
+    for (const Mishap mishap : plan.mishaps) {
       ControlCase& one = result.cases.emplace_back(ControlCase{path, mishap, {}});
       for (std::vector<MissionErrors>& flown : one.flown) {
         flown.resize(plan.seeds);
@@ -217,8 +231,28 @@ std::string control_json(const ControlResult& result) {
   return file::json_text(document, 1);
 }
 
+// The mishaps of these names, all without any.
+std::vector<Mishap> wanted_mishaps(const std::vector<std::string>& names) {
+  std::vector<Mishap> wanted;
+  std::vector<std::string> known;
+  for (const Mishap mishap : kMishaps) {
+    known.push_back(mishap_name(mishap));
+    if (names.empty() || std::ranges::find(names, known.back()) != names.end()) {
+      wanted.push_back(mishap);
+    }
+  }
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InputError("--mishap", "'" + name + "' is no mishap" + did_you_mean(name, known) +
+                                       "; there are " + join_text(known, ", "));
+    }
+  }
+  return wanted;
+}
+
 struct ControlArguments {
   std::string scenario;
+  std::vector<std::string> mishaps;
   bool quick = false;
   ControlPlan plan;
   std::string out = "out/control";
@@ -226,6 +260,7 @@ struct ControlArguments {
 
 void control(const ControlArguments& options) {
   ControlPlan plan = options.plan;
+  plan.mishaps = wanted_mishaps(options.mishaps);
   plan.vehicle = vehicle::read_scenario(scenario_file(options.scenario, "small.toml")).vehicle;
   vehicle::require_plane(plan.vehicle);
   if (options.quick) {
@@ -243,9 +278,11 @@ void control(const ControlArguments& options) {
 void add_control(CLI::App& app) {
   const auto [command, options] = cli::add_command<ControlArguments>(
       app, "control",
-      "Measure how well the simulated vehicle follows paths, under four controllers", control);
+      "Measure how well the simulated vehicle follows paths, through damage, currents and outages",
+      control);
   cli::add_file(command, "--scenario", options->scenario,
                 "file whose vehicle drives; else scenarios/small.toml here, or with the program");
+  command->add_option("--mishap", options->mishaps, "of these names alone (repeatable); else all");
   add_seeds(command, options->plan.seeds, "of noise and current");
   add_run_options(command, options->plan.first_seed, options->plan.threads, options->out,
                   "control.json");

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "lab/reallocation.hpp"
+#include "lab/reckoners.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/parameters.hpp"
 
@@ -25,17 +27,27 @@ Eigen::Vector3d flu_axis(const vehicle::Thruster& thruster) {
 
 class PidController final : public Controller {
  public:
-  PidController(const NominalModel& model, bool feed_forward)
-      : model_(model), feed_forward_(feed_forward), pid_(PidGains{}) {}
+  PidController(const NominalModel& model, bool feed_forward, const Diagnosis* diagnosis)
+      : model_(model),
+        feed_forward_(feed_forward),
+        pid_(PidGains{}),
+        reckoner_(make_nominal_reckoner(model)),
+        reallocation_(model) {
+    if (diagnosis != nullptr) {
+      diagnosis_.emplace(*diagnosis);
+    }
+  }
 
-  Eigen::Vector3d update(const Reference& reference, const Sensed& sensed) override {
+  Eigen::Vector3d update(const Reference& reference, const Sensed& measured) override {
+    const Sensed sensed = reckoner_->complete(measured);
+    diagnose(measured);
     const TrackingError error = tracking_error(reference, sensed);
     Eigen::Vector3d acceleration = pid_.update(error, kControlPeriodS);
     Eigen::Vector3d forces = model_.mass.cwiseProduct(acceleration);
     if (feed_forward_) {
       forces += model_.mass.cwiseProduct(error.acceleration) + model_.resistance(error.wanted);
     }
-    const Eigen::Vector3d commands = model_.allocate(forces);
+    const Eigen::Vector3d commands = reallocation_.allocate(forces);
     if ((commands.cwiseAbs().array() >= model_.most_rps.array()).any()) {
       pid_.saturated();
     }
@@ -43,9 +55,29 @@ class PidController final : public Controller {
   }
 
  private:
+  // At 5 Hz, as (c) learns.
+  void diagnose(const Sensed& measured) {
+    if (!diagnosis_) {
+      return;
+    }
+    if (const auto sample = window_.add(measured); sample && ++measured_ % 2 == 0) {
+      const auto& [middle, a] = *sample;
+      diagnosis_->update(
+          std::array{middle.velocity(0), middle.velocity(1), middle.velocity(2),
+                     middle.rotors_rps(0), middle.rotors_rps(1), middle.rotors_rps(2)},
+          std::array{a(0), a(1), a(2)}, middle.time_s);
+    }
+    reallocation_.look(&*diagnosis_, measured.rotors_rps);
+  }
+
   NominalModel model_;
   bool feed_forward_;
   Pid pid_;
+  std::unique_ptr<Reckoner> reckoner_;
+  Reallocation reallocation_;
+  std::optional<Diagnosis> diagnosis_;
+  SlopeWindow window_;
+  std::size_t measured_ = 0;
 };
 
 constexpr int kParameters = 5;  // per axis: mass, coupling, linear and quadratic drag, a force
@@ -53,7 +85,8 @@ using Regressor = Eigen::Matrix<double, kParameters, 1>;
 
 class AdaptiveController final : public Controller {
  public:
-  explicit AdaptiveController(const NominalModel& model) : model_(model) {
+  explicit AdaptiveController(const NominalModel& model)
+      : model_(model), reckoner_(make_nominal_reckoner(model)) {
     const Eigen::Vector3d& m = model.mass;
     const Eigen::Vector3d coupling(m.y(), m.x(), m.y() - m.x());
     for (int axis = 0; axis < 3; ++axis) {
@@ -62,7 +95,8 @@ class AdaptiveController final : public Controller {
     nominal_ = theta_;
   }
 
-  Eigen::Vector3d update(const Reference& reference, const Sensed& sensed) override {
+  Eigen::Vector3d update(const Reference& reference, const Sensed& measured) override {
+    const Sensed sensed = reckoner_->complete(measured);
     const TrackingError error = tracking_error(reference, sensed);
     // ν_r = ν_d + Λ e, s = ν_r − ν: e converges wherever s does.
     const Eigen::Vector3d wanted = error.wanted + kLambda.cwiseProduct(error.pose);
@@ -121,6 +155,7 @@ class AdaptiveController final : public Controller {
   static constexpr double kMostAcceleration = 0.08;
 
   NominalModel model_;
+  std::unique_ptr<Reckoner> reckoner_;
   Eigen::Matrix<double, kParameters, 3> theta_;
   Eigen::Matrix<double, kParameters, 3> nominal_;
 };
@@ -189,8 +224,9 @@ Eigen::Vector3d Pid::update(const TrackingError& error, double dt_s) {
   return gains_.p.cwiseProduct(error.pose) + gains_.d.cwiseProduct(error.velocity) + sum_;
 }
 
-std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forward) {
-  return std::make_unique<PidController>(model, feed_forward);
+std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forward,
+                                     const Diagnosis* diagnosis) {
+  return std::make_unique<PidController>(model, feed_forward, diagnosis);
 }
 
 std::unique_ptr<Controller> make_adaptive(const NominalModel& model) {

@@ -63,6 +63,8 @@ struct Sensed {
   Pose2 pose = Pose2::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< surge, sway, yaw rate over ground
   Eigen::Vector3d rotors_rps = Eigen::Vector3d::Zero();
+  /// Neither the velocity log nor the position measures: surge, sway, x and y are meaningless.
+  bool silent = false;
 };
 
 /// The vehicle in the plane, undamaged: the model for the design of controllers.
@@ -127,8 +129,11 @@ class Controller {
 
 inline constexpr double kControlPeriodS = 0.1;
 
-/// (a) PID alone. (b) PID with the nominal model's forces for the reference.
-std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forward);
+/// (a) PID alone. (b) PID with the nominal model's forces for the reference. (e) As (b), with
+/// commands by a Reallocation whose diagnosis goes on from `diagnosis`, if given. Outages are
+/// bridged by the nominal model's equation of motion, here and in (d).
+std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forward,
+                                     const Diagnosis* diagnosis = nullptr);
 
 /// (d) Slotine and Li's adaptive law: masses, drag, coupling and a constant force per axis are
 /// adapted from their nominal values.
@@ -138,7 +143,8 @@ std::unique_ptr<Controller> make_adaptive(const NominalModel& model);
 /// at the time of the middle measurement.
 class SlopeWindow {
  public:
-  /// Takes a measurement. Returns the middle measurement and the accelerations of a full window.
+  /// Takes a measurement; a silent one begins anew. Returns the middle measurement and the
+  /// accelerations of a full window.
   std::optional<std::pair<Sensed, Eigen::Vector3d>> add(const Sensed& sensed);
 
  private:
@@ -159,7 +165,10 @@ DynamicsModel untaught_model();
 /// commands. d is the model's present disturbance. The forces added to the nominal model's are
 /// averaged over half a second and more, and stay within a twentieth of the greatest thrust around
 /// the force seen by a disturbance observer. The observer gradually replaces a model of high
-/// novelty or with wide intervals, and an invalid solution.
-std::unique_ptr<Controller> make_learned(const NominalModel& nominal, DynamicsModel model);
+/// novelty or with wide intervals, and an invalid solution. Outages are bridged by DeadReckoning
+/// with the model. (f): with `reallocates`, commands and forces are those of a Reallocation by the
+/// model's diagnosis.
+std::unique_ptr<Controller> make_learned(const NominalModel& nominal, DynamicsModel model,
+                                         bool reallocates = false);
 
 }  // namespace kelpie::lab

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -12,8 +11,8 @@
 #include "cli/output.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "lab/commands.hpp"
+#include "lab/planar_truth.hpp"
 #include "study/six_axes.hpp"
-#include "vehicle/dynamics.hpp"
 #include "vehicle/parameters.hpp"
 #include "vehicle/scenario_file.hpp"
 #include "vehicle/simulation.hpp"
@@ -23,31 +22,13 @@ namespace {
 
 constexpr double kNormal90 = 1.645;
 constexpr double kRounding = 1e-9;
-constexpr std::array<Eigen::Index, kPlanarAxes> kOfSix{0, 1, 5};
 
 // As the log is: in the plane FLU, on six axes FRD.
 std::vector<double> truth_of(const vehicle::Scenario& scenario) {
   if (scenario.log == vehicle::LogKind::six) {
     return study::six_axis_truth(scenario.vehicle);
   }
-  const vehicle::Plant plant =
-      vehicle::make_plant(scenario.vehicle, scenario.configurations.front());
-  std::vector<double> truth{plant.mass(0, 0), plant.mass(1, 1), plant.mass(1, 5), plant.mass(5, 5)};
-  for (const Eigen::Index axis : kOfSix) {
-    truth.push_back(plant.linear_damping(axis));
-  }
-  for (const Eigen::Index axis : kOfSix) {
-    truth.push_back(plant.quadratic_damping(axis));
-  }
-  truth.insert(truth.end(), kPlanarAxes, 0.0);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const vehicle::Vector6 axis = plant.thrust_axes.col(static_cast<Eigen::Index>(i));
-    truth.push_back(plant.forward(static_cast<Eigen::Index>(i)));
-    truth.push_back(plant.reverse(static_cast<Eigen::Index>(i)));
-    truth.push_back(std::atan2(-axis(1), axis(0)));
-    truth.push_back(-axis(5));
-  }
-  return truth;
+  return planar_truth(scenario);
 }
 
 // The scale is the true surge inertia.

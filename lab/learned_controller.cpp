@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lab/controllers.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "lab/controllers.hpp"
+#include "lab/reallocation.hpp"
+#include "lab/reckoners.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -32,24 +34,32 @@ Inputs inputs_of(const Eigen::Vector3d& velocity, const Eigen::Vector3d& rotors)
 
 class LearnedController final : public Controller {
  public:
-  LearnedController(const NominalModel& nominal, DynamicsModel model)
-      : nominal_(nominal), model_(std::move(model)), pid_(PidGains{}) {
+  LearnedController(const NominalModel& nominal, DynamicsModel model, bool reallocates)
+      : nominal_(nominal),
+        model_(std::move(model)),
+        pid_(PidGains{}),
+        reckoner_(make_learned_reckoner(model_)),
+        reallocation_(nominal),
+        reallocates_(reallocates) {
     const Eigen::Vector3d most_thrust = nominal.most_rps.cwiseAbs2().cwiseProduct(Eigen::Vector3d(
         nominal.thrusters[0].forward, nominal.thrusters[1].forward, nominal.thrusters[2].forward));
     authority_ = (nominal.by_thrust.cwiseAbs() * most_thrust).cwiseQuotient(nominal.mass);
   }
 
-  Eigen::Vector3d update(const Reference& reference, const Sensed& sensed) override {
-    learn(sensed);
+  Eigen::Vector3d update(const Reference& reference, const Sensed& measured) override {
+    learn(measured);
+    reallocate(measured.rotors_rps);
+    const Sensed sensed = reckoner_->complete(measured);
     const TrackingError error = tracking_error(reference, sensed);
     const Eigen::Vector3d wanted = error.acceleration + pid_.update(error, kControlPeriodS);
-    const Eigen::Vector3d start =
-        nominal_.allocate(nominal_.mass.cwiseProduct(wanted) + nominal_.resistance(error.wanted));
+    const Eigen::Vector3d start = reallocation_.allocate(nominal_.mass.cwiseProduct(wanted) +
+                                                         nominal_.resistance(error.wanted));
     const Eigen::Vector3d solved = solve(error.wanted, start, wanted);
     trust_ += kControlPeriodS / kTrustS * ((believed_ ? 1.0 : 0.0) - trust_);
-    correct(trust_ * (nominal_.forces(solved) - nominal_.forces(start)) -
+    correct(trust_ * (reallocation_.forces(solved) - reallocation_.forces(start)) -
             (1.0 - trust_) * observed_);
-    const Eigen::Vector3d commands = nominal_.allocate(nominal_.forces(start) + correction_);
+    const Eigen::Vector3d commands =
+        reallocation_.allocate(reallocation_.forces(start) + correction_);
     if (at_limit(commands)) {
       pid_.saturated();
     }
@@ -84,8 +94,17 @@ class LearnedController final : public Controller {
   void observe(const Sensed& middle, const Eigen::Vector3d& acceleration) {
     const Eigen::Vector3d force = nominal_.mass.cwiseProduct(acceleration) +
                                   nominal_.resistance(middle.velocity) -
-                                  nominal_.forces(middle.rotors_rps);
+                                  reallocation_.forces(middle.rotors_rps);
     observed_ += kControlPeriodS / kObservedS * (force - observed_);
+  }
+
+  // What has been named needs no observer any more.
+  void reallocate(const Eigen::Vector3d& rotors) {
+    if (reallocates_) {
+      const Eigen::Vector3d lost = reallocation_.look(model_.diagnosis(), rotors);
+      observed_ += lost;
+      correction_ -= lost;
+    }
   }
 
   void learn(const Sensed& sensed) {
@@ -159,6 +178,9 @@ class LearnedController final : public Controller {
   NominalModel nominal_;
   DynamicsModel model_;
   Pid pid_;
+  std::unique_ptr<Reckoner> reckoner_;
+  Reallocation reallocation_;
+  bool reallocates_;
   SlopeWindow window_;
   Eigen::Vector3d disturbance_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d observed_ = Eigen::Vector3d::Zero();    // N, N m
@@ -174,6 +196,10 @@ class LearnedController final : public Controller {
 }  // namespace
 
 std::optional<std::pair<Sensed, Eigen::Vector3d>> SlopeWindow::add(const Sensed& sensed) {
+  if (sensed.silent) {
+    seen_ = 0;
+    return {};
+  }
   ring_[seen_++ % kCount] = sensed;
   if (seen_ < kCount) {
     return {};
@@ -197,8 +223,9 @@ DynamicsModel untaught_model() {
   return {{"u", "v", "r", "th1", "th2", "th3"}, {"udot", "vdot", "rdot"}, settings};
 }
 
-std::unique_ptr<Controller> make_learned(const NominalModel& nominal, DynamicsModel model) {
-  return std::make_unique<LearnedController>(nominal, std::move(model));
+std::unique_ptr<Controller> make_learned(const NominalModel& nominal, DynamicsModel model,
+                                         bool reallocates) {
+  return std::make_unique<LearnedController>(nominal, std::move(model), reallocates);
 }
 
 }  // namespace kelpie::lab

@@ -16,5 +16,6 @@ int main(int argc, char** argv) {
   kelpie::lab::add_diagnose(app);
   kelpie::lab::add_hostile(app);
   kelpie::lab::add_identify(app);
+  kelpie::lab::add_plan(app);
   return kelpie::cli::run_program(app, argc, argv);
 }

@@ -70,6 +70,17 @@ TEST(ClosedLoop, FallsBackWithoutAModel) {
   EXPECT_LT(learned.after, 1.2 * nominally.after + 0.001);
 }
 
+// The nominal vehicle's own equation bridges twenty seconds without velocities and positions.
+TEST(ClosedLoop, AnOutageIsBridged) {
+  const vehicle::VehicleParameters vehicle = dagon();
+  const NominalModel nominal(vehicle);
+  const Mission mission{
+      .path = PathKind::figure_of_eight, .mishap = Mishap::outage, .times = kShort};
+  const MissionErrors flown = fly(vehicle, mission, *make_pid(nominal, true));
+  EXPECT_LT(flown.during, 0.1);
+  EXPECT_LT(flown.after, 0.1);
+}
+
 TEST(SlopeWindow, GivesTheSlopeOfTheMiddle) {
   SlopeWindow window;
   std::optional<std::pair<Sensed, Eigen::Vector3d>> sample;

@@ -104,6 +104,28 @@ MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& s
   return best;
 }
 
+Eigen::MatrixXd distance_hessian(const FreeFit& fit, const EquationStructure& structure,
+                                 const MinimumDistance& best) {
+  const Eigen::MatrixXd jacobian =
+      structure.residual(fit.coefficients, best.parameters).jacobian(Eigen::all, best.free);
+  return with_ridge(jacobian.transpose() *
+                    (distance_metric(fit, structure.mass(best.parameters)) * jacobian));
+}
+
+Eigen::MatrixXd gradient_covariance(const FreeFit& fit, const EquationStructure& structure,
+                                    const MinimumDistance& best) {
+  const Eigen::MatrixXd mass = structure.mass(best.parameters);
+  const Eigen::MatrixXd jacobian =
+      structure.residual(fit.coefficients, best.parameters).jacobian(Eigen::all, best.free);
+  const Eigen::MatrixXd weight = equilibrated_inverse(mass * fit.noise * mass.transpose()) * mass;
+  Eigen::MatrixXd by_scores(jacobian.cols(), jacobian.rows());
+  for (Eigen::Index term = 0; term < fit.gram.rows(); ++term) {
+    by_scores.middleCols(mass.rows() * term, mass.rows()) =
+        jacobian.middleRows(mass.rows() * term, mass.rows()).transpose() * weight;
+  }
+  return by_scores * fit.scores * by_scores.transpose();
+}
+
 SandwichErrors sandwich(const FreeFit& fit, const EquationStructure& structure,
                         const MinimumDistance& best) {
   const Eigen::MatrixXd mass = structure.mass(best.parameters);

@@ -39,6 +39,15 @@ struct MinimumDistance {
 MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& structure,
                                   MinimumDistance start);
 
+/// The curvature of the distance by the free parameters at best.parameters.
+Eigen::MatrixXd distance_hessian(const FreeFit& fit, const EquationStructure& structure,
+                                 const MinimumDistance& best);
+
+/// Covariance of the gradient of half the distance by the free parameters, from fit.scores: the
+/// middle of the sandwich.
+Eigen::MatrixXd gradient_covariance(const FreeFit& fit, const EquationStructure& structure,
+                                    const MinimumDistance& best);
+
 /// Errors of parameters from the covariance of the scores, and what chance alone would make of the
 /// distance.
 struct SandwichErrors {

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/motion/planar_fit.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/eigen.hpp"
 #include "core/normal_equations.hpp"
+#include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "motion/expected_fit.hpp"
 #include "motion/minimum_distance.hpp"
 #include "motion/structure.hpp"
 #include "motion/tuning.hpp"
@@ -161,26 +165,28 @@ void require_excitation(const PlanarFit& fit, const MinimumDistance& best) {
   }
 }
 
-PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit& free_fit,
-                    const MinimumDistance& best) {
-  const SandwichErrors errors = sandwich(free_fit, planar_structure(best.parameters), best);
+double misfit_of(const MinimumDistance& best, const SandwichErrors& errors) {
+  return std::max(
+      1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
+}
+
+// `errors`: of the free parameters, by chance alone.
+PlanarFit collected(const std::vector<std::string>& thrusters, const WeakRows& weak,
+                    const MinimumDistance& best, const Eigen::MatrixXd& errors, double misfit) {
   PlanarFit fit;
   fit.windows = static_cast<std::size_t>(weak.terms.rows());
   fit.window_s = 2.0 * kIdentification.half_window_s;
-  fit.misfit = std::max(
-      1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
-  fit.free_terms = Matrix(static_cast<std::size_t>(free_fit.coefficients.rows()), kPlanarAxes);
-  as_matrix(fit.free_terms) = free_fit.coefficients;
-  const std::vector<std::string> names = names_of(rows.thrusters);
+  fit.misfit = misfit;
+  const std::vector<std::string> names = names_of(thrusters);
   fit.covariance = Matrix(names.size(), names.size());
   auto covariance = as_matrix(fit.covariance);
-  covariance(best.free, best.free) = fit.misfit * errors.covariance;
+  covariance(best.free, best.free) = misfit * errors;
   const Eigen::Vector3d forces = force_sizes(weak, best.parameters);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto place = static_cast<Eigen::Index>(i);
     const bool is_sought = std::ranges::find(best.free, place) != best.free.end();
     const double value = best.parameters(place);
-    const double chance = std::sqrt(covariance(place, place) / fit.misfit);  // excitation's alone
+    const double chance = std::sqrt(covariance(place, place) / misfit);  // excitation's alone
     if (is_sought) {
       const double allowance = is_angle(i) ? kIdentification.angle_allowance_rad
                                            : kIdentification.plane_allowance * value;
@@ -197,8 +203,36 @@ PlanarFit collected(const PlanarRows& rows, const WeakRows& weak, const FreeFit&
         i < PlanarPlace::thrusters || (i - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
     fit.parameters.push_back({names[i], value, error, state, scales});
   }
-  require_excitation(fit, best);
   return fit;
+}
+
+// What was never seen: a thruster counts as alike both ways.
+void complete(const Eigen::MatrixXd& gram, Eigen::VectorXd& parameters) {
+  for (Eigen::Index term = kTermThrusters; term < gram.rows(); term += 2) {
+    const auto index = static_cast<std::size_t>((term - kTermThrusters) / 2);
+    const auto at = static_cast<Eigen::Index>(PlanarPlace::thruster(index));
+    for (const Eigen::Index way : {0, 1}) {
+      if (gram(term + way, term + way) <= 0.0) {
+        parameters(at + way) = parameters(at + 1 - way);
+      }
+    }
+  }
+}
+
+// Bᵀ = M⁻¹ Θ(θ).
+Eigen::MatrixXd structure_coefficients(const Eigen::VectorXd& parameters, Eigen::Index terms) {
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(terms, 3);
+  const Eigen::VectorXd value = structure_residual(none, parameters).value;
+  const Eigen::MatrixXd theta = -Eigen::Map<const Eigen::MatrixXd>(value.data(), 3, terms);
+  return (planar_mass(parameters).inverse() * theta).transpose();
+}
+
+double median_ratio(const Eigen::MatrixXd& above, const Eigen::MatrixXd& below) {
+  std::vector<double> ratios;
+  for (Eigen::Index i = 0; i < above.rows(); ++i) {
+    ratios.push_back(above(i, i) / std::max(below(i, i), std::numeric_limits<double>::min()));
+  }
+  return quantile(ratios, 0.5);
 }
 
 void require_windows(const WeakRows& weak) {
@@ -216,7 +250,89 @@ PlanarFit fit_planar(const PlanarRows& rows) {
   const WeakRows weak = weak_rows(rows, {});
   require_windows(weak);
   const FreeFit free_fit = fit_freely(weak);
-  return collected(rows, weak, free_fit, fit_structure(free_fit, rows.thrusters.size()));
+  const MinimumDistance best = fit_structure(free_fit, rows.thrusters.size());
+  const SandwichErrors errors = sandwich(free_fit, planar_structure(best.parameters), best);
+  PlanarFit fit = collected(rows.thrusters, weak, best, errors.covariance, misfit_of(best, errors));
+  fit.free_terms = Matrix(static_cast<std::size_t>(free_fit.coefficients.rows()), kPlanarAxes);
+  as_matrix(fit.free_terms) = free_fit.coefficients;
+  require_excitation(fit, best);
+  return fit;
+}
+
+ExpectedPlanarFit::ExpectedPlanarFit(const PlanarRows& rows)
+    : thrusters_(rows.thrusters), weak_(weak_rows(rows, {})) {
+  require_windows(weak_);
+  free_ = fit_freely(weak_);
+  best_ = fit_structure(free_, thrusters_.size());
+  const SandwichErrors errors = sandwich(free_, planar_structure(best_.parameters), best_);
+  misfit_ = misfit_of(best_, errors);
+  noise_ = window_noise(weak_, free_, kPlanarWindow);
+  const std::vector<Eigen::Index> told = best_.free;
+  complete(free_.gram, best_.parameters);
+  best_.at_bound.assign(static_cast<std::size_t>(best_.parameters.size()), false);
+  free_.coefficients = structure_coefficients(best_.parameters, free_.gram.rows());
+  free_.scores = expected_scores(weak_.terms, noise_);
+  factor_ =
+      std::max(1.0, median_ratio(errors.covariance, covariance_of(free_.gram, free_.scores, told)));
+  free_.scores *= factor_;
+  now_ = fit_of(free_.gram, free_.scores, weak_);
+}
+
+PlanarFit ExpectedPlanarFit::after(const WeakRows& drives) const {
+  if (drives.terms.rows() == 0) {
+    return now_;
+  }
+  WeakRows all;
+  all.terms.resize(weak_.terms.rows() + drives.terms.rows(), weak_.terms.cols());
+  all.terms << weak_.terms, drives.terms;
+  all.acceleration.resize(all.terms.rows(), weak_.acceleration.cols());
+  all.acceleration << weak_.acceleration, drives.acceleration;
+  return fit_of(free_.gram + drives.terms.transpose() * drives.terms,
+                free_.scores + factor_ * expected_scores(drives.terms, noise_), all);
+}
+
+Eigen::MatrixXd ExpectedPlanarFit::covariance_of(const Eigen::MatrixXd& gram,
+                                                 const Eigen::MatrixXd& scores,
+                                                 const std::vector<Eigen::Index>& free) const {
+  const FreeFit expected{
+      .coefficients = free_.coefficients, .gram = gram, .noise = free_.noise, .scores = scores};
+  const EquationStructure structure = planar_structure(best_.parameters);
+  MinimumDistance best{.parameters = best_.parameters, .free = free};
+  best.hessian = distance_hessian(expected, structure, best);
+  return sandwich(expected, structure, best).covariance;
+}
+
+double ExpectedPlanarFit::evidence(const WeakRows& drives, const std::vector<double>& first,
+                                   const std::vector<double>& second) const {
+  const FreeFit changed{.coefficients = free_.coefficients,
+                        .gram = drives.terms.transpose() * drives.terms,
+                        .noise = free_.noise,
+                        .scores = factor_ * expected_scores(drives.terms, noise_)};
+  const EquationStructure structure = planar_structure(best_.parameters);
+  MinimumDistance best{.parameters = best_.parameters};
+  for (Eigen::Index place = 0; place < best.parameters.size(); ++place) {
+    best.free.push_back(place);
+  }
+  Eigen::MatrixXd changes(best.parameters.size(), 2);
+  changes << as_vector(first), as_vector(second);
+  const Eigen::MatrixXd pull = distance_hessian(changed, structure, best) * changes;
+  const Eigen::Matrix2d curvature = changes.transpose() * pull;
+  const Eigen::Matrix2d spread =
+      misfit_ * changes.transpose() * gradient_covariance(changed, structure, best) * changes +
+      pull.transpose() * as_matrix(now_.covariance) * pull;
+  const Eigen::Matrix2d information =
+      curvature * equilibrated_inverse(spread) * curvature.transpose();
+  const double own = std::min(information(0, 0), information(1, 1));
+  const double shared = information(0, 1) * information(0, 1) /
+                        std::max(information(0, 0) * information(1, 1), 1e-300);
+  return 0.5 * own * std::max(0.0, 1.0 - shared);
+}
+
+PlanarFit ExpectedPlanarFit::fit_of(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& scores,
+                                    const WeakRows& windows) const {
+  MinimumDistance best = best_;
+  best.free = sought(gram, best.parameters.size());
+  return collected(thrusters_, windows, best, covariance_of(gram, scores, best.free), misfit_);
 }
 
 std::array<AccelerationCheck, kPlanarAxes> check_accelerations(

@@ -166,8 +166,7 @@ WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations
     evaluated.evaluate(rows.velocity(at), rows.speed(at), row_terms);
     equation.terms.row(row) = row_terms.transpose();
   }
-  return weak_rows(equation,
-                   {.half_s = kIdentification.half_window_s, .stride_s = kIdentification.stride_s});
+  return weak_rows(equation, kPlanarWindow);
 }
 
 }  // namespace kelpie

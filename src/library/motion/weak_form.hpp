@@ -7,6 +7,7 @@
 
 #include "kelpie/motion/planar_fit.hpp"
 #include "motion/motion_terms.hpp"
+#include "motion/tuning.hpp"
 
 namespace kelpie {
 
@@ -47,6 +48,10 @@ struct WindowShape {
   double stride_s = 0.0;
 };
 
+/// The windows of fit_planar(): 5 s every half second.
+inline constexpr WindowShape kPlanarWindow{.half_s = kIdentification.half_window_s,
+                                           .stride_s = kIdentification.stride_s};
+
 /// Rows of an equation of motion that is linear in its terms.
 struct EquationRows {
   std::span<const double> times_s;
@@ -66,7 +71,7 @@ struct WeakRows {
 /// Windows within stretches. Windows with a spike of the log are dropped.
 WeakRows weak_rows(const EquationRows& rows, const WindowShape& shape);
 
-/// Windows of 5 s every half second, in the plane. `accelerations` (rows × 3) may be empty.
+/// kPlanarWindow in the plane. `accelerations` (rows × 3) may be empty.
 WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations);
 
 }  // namespace kelpie

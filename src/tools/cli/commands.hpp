@@ -21,6 +21,7 @@ void add_identify(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_learn(CLI::App& app);
 void add_memory(CLI::App& app);
+void add_plan(CLI::App& app);
 void add_predict(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_rollout(CLI::App& app);

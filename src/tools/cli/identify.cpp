@@ -35,7 +35,7 @@ constexpr const char* kPage = "identify.html";
 constexpr const char* kCertificate = "certificate.json";
 constexpr const char* kOwn = "kelpie";
 constexpr double kLeastMass = 1e-6;  // [kg]
-constexpr double kMostScale = 1e9;   // of masses [kg] and thrusts [N/n²]
+constexpr double kMostScale = 1e9;   // [kg]
 
 using Base = std::optional<vehicle::VehicleParameters>;
 
@@ -75,16 +75,7 @@ struct IdentifyArguments : PlanOptions {
 study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& base) {
   study::KnownThrust wish{.mass_kg = options.mass_kg,
                           .surge_added_mass_kg = options.surge_added_mass_kg};
-  for (const std::string& assignment : options.thrust) {
-    const auto [name, text] = format::key_and_value(assignment, "--thrust");
-    double value = 0.0;
-    if (!parse_number(text, value) || !(value > 0.0 && value <= kMostScale)) {
-      throw InputError("--thrust", "'" + text + "' of '" + name +
-                                       "' has to be a number > 0, up to 1e+09, in N per square of "
-                                       "the thruster's unit");
-    }
-    wish.thrust.emplace_back(name, value);
-  }
+  wish.thrust = known_thrusts(options.thrust);
   if (base) {
     if (!wish.mass_kg) {
       wish.mass_kg = base->mass_kg;
@@ -332,9 +323,7 @@ void add_identify(CLI::App& app) {
                       "number of the configuration; else the first in the log");
   add_list(command, "--thrusters", options->thrusters,
            "inputs that are thrusters' speeds, separated by commas; else by their names");
-  CLI::Option* const thrust =
-      add_list(command, "--thrust", options->thrust,
-               "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
+  CLI::Option* const thrust = add_thrust_option(*command, options->thrust);
   command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]")
       ->check(within(kLeastMass, kMostScale));
   command

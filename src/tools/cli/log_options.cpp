@@ -29,6 +29,7 @@ namespace {
 
 constexpr const char* kAlignAuto = "auto";
 constexpr const char* kImplausible = "implausible";
+constexpr double kMostThrust = 1e9;  // [N/n²]
 
 // The columns are those of the model that is to go on.
 void take_columns(const format::Origin& from, log::Roles& roles) {
@@ -326,6 +327,26 @@ void add_units_option(CLI::App& command, std::vector<std::string>& units) {
   add_list(&command, "--units", units,
            "units of columns in the log, as in r=deg/s,u=cm/s,th1=rev/s: degrees, mm, cm, km, "
            "knots, g and time stamps (t=ms) are converted to the SI");
+}
+
+CLI::Option* add_thrust_option(CLI::App& command, std::vector<std::string>& thrust) {
+  return add_list(&command, "--thrust", thrust,
+                  "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
+}
+
+std::vector<std::pair<std::string, double>> known_thrusts(const std::vector<std::string>& thrust) {
+  std::vector<std::pair<std::string, double>> known;
+  for (const std::string& assignment : thrust) {
+    const auto [name, text] = format::key_and_value(assignment, "--thrust");
+    double value = 0.0;
+    if (!parse_number(text, value) || !(value > 0.0 && value <= kMostThrust)) {
+      throw InputError("--thrust", "'" + text + "' of '" + name +
+                                       "' has to be a number > 0, up to 1e+09, in N per square of "
+                                       "the thruster's unit");
+    }
+    known.emplace_back(name, value);
+  }
+  return known;
 }
 
 void add_units(const std::vector<std::string>& assignments,

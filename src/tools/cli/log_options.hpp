@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bag/open_bag.hpp"
@@ -115,6 +116,13 @@ void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
 
 /// The option --units: columns whose values are converted to the SI.
 void add_units_option(CLI::App& command, std::vector<std::string>& units);
+
+/// --thrust of commands that identify: NAME=K, forward thrust K n² in N, gives the scale.
+CLI::Option* add_thrust_option(CLI::App& command, std::vector<std::string>& thrust);
+
+/// The thrusts of --thrust, N per square of the thruster's unit. Throws InputError (--thrust) on
+/// text without name, and on a number that is not above 0 and at most 1e9.
+std::vector<std::pair<std::string, double>> known_thrusts(const std::vector<std::string>& thrust);
 
 /// Adds the units of --units to those of a configuration. Throws InputError on text without column.
 void add_units(const std::vector<std::string>& assignments,

@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   kelpie::cli::add_simulate(app);
   kelpie::cli::add_vehicle(app);
   kelpie::cli::add_identify(app);
+  kelpie::cli::add_plan(app);
   kelpie::cli::add_inspect(app);
   kelpie::cli::add_convert(app);
   kelpie::cli::add_rollout(app);

@@ -45,7 +45,8 @@ FirstLook first_look(const log::Dataset& data) {
                  .alignment = choose_alignment(data, split, "auto", "auto"),
                  .axes = {}};
   const std::vector<double> with = r2_of(aligned(data, look.alignment.alignment), split);
-  const std::vector<double> alone = r2_of(without_inputs(data, look.alignment.alignment.commands), split);
+  const std::vector<double> alone =
+      r2_of(without_inputs(data, look.alignment.alignment.commands), split);
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
     look.axes.push_back({data.target_names[axis], with[axis], alone[axis]});
   }

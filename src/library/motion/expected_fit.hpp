@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kelpie/motion/planar_fit.hpp"
+#include "motion/free_fit.hpp"
+#include "motion/minimum_distance.hpp"
+#include "motion/window_noise.hpp"
+
+namespace kelpie {
+
+/// What fit_planar() will find after rows to come, by the windows, the normal equations and the
+/// sandwich of fit_planar() itself: the standard errors of the rows so far and of drives on top,
+/// with the noise that the rows so far have in the windows (window_noise()).
+class ExpectedPlanarFit {
+ public:
+  /// Throws what fit_planar() throws, but goes on where a parameter is not told: a drive that tells
+  /// the parameter is sought. A thruster that never ran in one direction counts as alike both ways.
+  explicit ExpectedPlanarFit(const PlanarRows& rows);
+
+  /// By the rows so far. Errors are those of fit_planar(), or those expected by window_noise()
+  /// where these are larger: residuals of a short log are smaller than its errors.
+  const PlanarFit& now() const { return now_; }
+  /// After windows of drives on top (weak_rows() of simulated rows). Estimates stay.
+  PlanarFit after(const WeakRows& drives) const;
+
+  /// Expected logarithm of the likelihood ratio [nats] of two changes of the parameters after the
+  /// rows so far, if one of them is true and the other's size is fitted, for the harder of the two
+  /// cases: T-optimality (Atkinson & Fedorov 1975) for changes so small that they act linearly.
+  /// Errors of the parameters before the change count. `first`, `second`: changes of all
+  /// parameters.
+  double evidence(const WeakRows& drives, const std::vector<double>& first,
+                  const std::vector<double>& second) const;
+
+ private:
+  Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& scores,
+                                const std::vector<Eigen::Index>& free) const;
+  PlanarFit fit_of(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& scores,
+                   const WeakRows& windows) const;
+
+  std::vector<std::string> thrusters_;
+  WeakRows weak_;
+  FreeFit free_;  ///< of the rows so far, with the coefficients of the structure
+  MinimumDistance best_;
+  WindowNoise noise_;
+  double misfit_ = 1.0;
+  double factor_ = 1.0;  ///< on the variance: fit_planar()'s over that of the noise, at least 1
+  PlanarFit now_;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "study/drive_plan.hpp"
+
+namespace kelpie::format {
+
+/// A planned drive with what its files say: docs/howto/identify.md, "Drive this next".
+struct PlannedDrive {
+  std::string source;  ///< log
+  std::vector<std::string> thrusters{};
+  study::DrivePlan plan{};
+  study::DriveBounds bounds{};
+  double aim = 0.05;   ///< share, or nats
+  bool parts = false;  ///< two causes, not parameters
+  bool has_scale = false;
+  /// The command of a thruster for a speed of the fit.
+  std::function<double(std::size_t thruster, double speed)> command =
+      [](std::size_t, double speed) { return speed; };
+};
+
+/// Setpoints: t and a command per thruster, which hold until the next row; the last row is at rest.
+std::string drive_csv(const PlannedDrive& drive);
+
+/// Bounds, countdown and manoeuvres. Ends in a newline.
+std::string drive_json(const PlannedDrive& drive);
+
+/// Whether commands are pulses that rest near 1500 µs and names end in a motor's number.
+bool has_pulses(const PlannedDrive& drive);
+
+/// A Lua script for ArduSub that holds the pulses on the outputs of the motors, begins when the
+/// vehicle is armed, and lets go when disarmed, at the end, and after a pause of the script
+/// (ArduPilot, libraries/AP_Scripting/examples/servo_set_get.lua). Requires has_pulses().
+std::string drive_lua(const PlannedDrive& drive);
+
+}  // namespace kelpie::format

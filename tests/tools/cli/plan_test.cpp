@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+
+namespace kelpie::plan_test {
+namespace {
+
+using nlohmann::json;
+
+const std::string kDagon = KELPIE_SOURCE_DIR "/vehicles/dagon.toml";
+
+class Plan : public testing::CommandTest {
+ protected:
+  void SetUp() override {
+    write("scenario.toml", "vehicle = \"" + kDagon +
+                               "\"\nrate_hz = 4.0\nnoise = \"as_recorded\"\n[[configurations]]\n"
+                               "name = \"nominal\"\n[[phases]]\nconfiguration = \"nominal\"\n"
+                               "duration_s = 90.0\n");
+    ASSERT_EQ(run("simulate scenario.toml --out log.csv").exit_code, 0);
+  }
+
+  json planned(const std::string& arguments, const std::string& out) const {
+    testing::succeeded(run("plan log.csv " + arguments + " --out " + out));
+    return json::parse(content(out + "/plan.json"));
+  }
+};
+
+// Setpoints begin at 0, end at rest, keep the range of the log, and last as long as the plan says.
+TEST_F(Plan, SetpointsAreThoseOfThePlan) {
+  const json plan = planned("--thrust th1=0.0262 --seconds 40 --speed 0.6 --radius 6", "out");
+  EXPECT_EQ(plan["format"], "kelpie-plan");
+  EXPECT_LE(plan["duration_s"], 40.0);
+  EXPECT_LE(plan["farthest_m"], 6.0);
+  EXPECT_LE(plan["fastest_m_s"], 0.6);
+  std::istringstream lines(content("out/plan.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "t,th1,th2,th3");
+  double t = -1.0;
+  std::vector<double> row(4);
+  while (std::getline(lines, line)) {
+    char comma = 0;
+    std::istringstream cells(line);
+    cells >> row[0] >> comma >> row[1] >> comma >> row[2] >> comma >> row[3];
+    EXPECT_GT(row[0], t);
+    t = row[0];
+    EXPECT_LE(std::max(std::abs(row[1]), std::abs(row[2])), 12.6);
+    EXPECT_LE(std::abs(row[3]), 11.0);
+  }
+  EXPECT_EQ(t, plan["duration_s"]);
+  EXPECT_EQ(row, (std::vector<double>{t, 0.0, 0.0, 0.0}));
+  EXPECT_FALSE(exists("out/plan.lua"));  // speeds are no pulses
+  EXPECT_NE(content("out/plan.html").find("Countdown"), std::string::npos);
+}
+
+// What is known never shrinks, and the same log has the same plan.
+TEST_F(Plan, TheCountdownFallsAndRepeats) {
+  const json plan = planned("--tell sway_drag --seconds 30", "out");
+  EXPECT_EQ(plan["names"], (json{"sway_linear_drag", "sway_quadratic_drag"}));
+  ASSERT_GT(plan["countdown"].size(), 1U);
+  for (std::size_t i = 1; i < plan["countdown"].size(); ++i) {
+    const json& before = plan["countdown"][i - 1]["numbers"];
+    const json& after = plan["countdown"][i]["numbers"];
+    for (std::size_t k = 0; k < after.size(); ++k) {
+      EXPECT_LE(after[k].get<double>(), 1.02 * before[k].get<double>());
+    }
+  }
+  planned("--tell sway_drag --seconds 30", "again");
+  EXPECT_EQ(content("out/plan.csv"), content("again/plan.csv"));
+}
+
+TEST_F(Plan, TwoCausesAreToldApart) {
+  const json plan = planned("--apart th2,drag --seconds 60", "out");
+  EXPECT_EQ(plan["number"], "nats");
+  EXPECT_TRUE(plan["reached"]);
+  EXPECT_GE(plan["countdown"].back()["numbers"][0], 5.0);
+  const json larger = planned("--apart th2,drag --change 50 --seconds 60", "larger");
+  EXPECT_LE(larger["duration_s"], plan["duration_s"]);
+}
+
+TEST_F(Plan, MistakesAreRefused) {
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    testing::expect_refused(run("plan log.csv " + arguments + " --out refused"), message);
+    EXPECT_FALSE(exists("refused")) << arguments;
+  };
+  refused("--tell wings", "'wings' is no parameter");
+  refused("--apart th2", "takes two causes");
+  refused("--apart th2,th2", "names the same change twice");
+  refused("--apart th2,wings", "'wings' changes nothing that is known");
+  refused("--apart th2,drag --tell drag", "two aims");
+  refused("--range th9=-1:1", "'th9' is no thruster of the log");
+  refused("--range th1=1:2", "with rest between");
+  refused("--range th1=a:b", "has to be NAME=LEAST:MOST");
+  refused("--thrust th1=0", "has to be a number > 0");
+  refused("--radius 0.1 --seconds 5", "leave room for no manoeuvre");
+  for (const char* const value : {"0", "nan", "-1", "1e9", "x"}) {
+    for (const char* const option : {"--seconds", "--speed", "--radius", "--percent", "--change"}) {
+      refused(std::string(option) + " " + value, option);
+    }
+  }
+  testing::expect_refused(run("plan missing.csv --out refused"), "missing.csv");
+}
+
+}  // namespace
+}  // namespace kelpie::plan_test
