@@ -134,7 +134,7 @@ void LogOptions::add_to(CLI::App& command) {
 
 bool LogOptions::has_columns() const {
   return !inputs.empty() || !targets.empty() || !ignored.empty() || !time.empty() ||
-         rate_hz != 0.0 || !units.empty();
+         rate_hz != 0.0 || !units.empty() || !pose.empty();
 }
 
 void LogOptions::add_columns_to(CLI::App& command) {
@@ -145,6 +145,7 @@ void LogOptions::add_columns_to(CLI::App& command) {
   add_list(&command, "--ignore", ignored, "columns that are neither, separated by commas");
   add_clock_options(command, time, rate_hz);
   add_units_option(command, units);
+  add_pose_option(command, pose);
 }
 
 log::Roles LogOptions::over(const log::Roles& file) const {
@@ -166,6 +167,7 @@ log::Roles LogOptions::over(const log::Roles& file) const {
     roles.ignored = ignored;
   }
   roles.also = also;
+  roles.pose = pose;
   add_units(units, roles.units);
   return roles;
 }
@@ -179,6 +181,7 @@ std::string LogOptions::text() const {
   add("--time", time);
   add("--rate", rate_hz > 0.0 ? fmt::format("{:g}", rate_hz) : "");
   add("--units", join_text(units, ","));
+  add("--pose", join_text(pose, ","));
   return text;
 }
 
@@ -326,6 +329,12 @@ void add_units_option(CLI::App& command, std::vector<std::string>& units) {
   add_list(&command, "--units", units,
            "units of columns in the log, as in r=deg/s,u=cm/s,th1=rev/s: degrees, mm, cm, km, "
            "knots, g and time stamps (t=ms) are converted to the SI");
+}
+
+void add_pose_option(CLI::App& command, std::vector<std::string>& pose) {
+  add_list(&command, "--pose", pose,
+           "columns of a CSV file with poses in place of velocities, as in x,y,psi or "
+           "z=altitude: velocities and accelerations become integrals over a window that is found");
 }
 
 void add_units(const std::vector<std::string>& assignments,

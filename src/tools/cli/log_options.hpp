@@ -29,6 +29,7 @@ struct LogOptions {
   std::vector<std::string> ignored;
   std::vector<std::string> units;   ///< column=unit
   std::vector<std::string> also{};  ///< log::Roles::also
+  std::vector<std::string> pose{};  ///< log::Roles::pose
 
   void add_to(CLI::App& command);
   /// The options of add_to() that say what the columns of a table are.
@@ -115,6 +116,9 @@ void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
 
 /// The option --units: columns whose values are converted to the SI.
 void add_units_option(CLI::App& command, std::vector<std::string>& units);
+
+/// The option --pose (log::Roles::pose).
+void add_pose_option(CLI::App& command, std::vector<std::string>& pose);
 
 /// Adds the units of --units to those of a configuration. Throws InputError on text without column.
 void add_units(const std::vector<std::string>& assignments,
