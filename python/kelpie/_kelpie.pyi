@@ -47,6 +47,9 @@ def read_log(
     messages: str,
     recover: bool,
     strict: bool,
+    pose: list[str],
+    inputs: list[str],
+    rate: float,
 ) -> dict[str, Any]: ...
 def run_command(words: list[str]) -> str: ...
 def parse_yaml(text: str) -> Any: ...

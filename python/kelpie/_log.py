@@ -40,7 +40,8 @@ class LogArrays(dict[str, NDArray[Any]]):
 def read_log(path: _Path, config: Optional[_Path] = None, *,
              columns: Optional[Sequence[str]] = None, clock: str = "receive",
              messages: Optional[_Path] = None, recover: bool = False, strict: bool = False,
-             frame: Optional[bool] = None) -> Any:
+             frame: Optional[bool] = None, pose: Optional[Sequence[str]] = None,
+             inputs: Optional[Sequence[str]] = None, rate: float = 0.0) -> Any:
     """Reads a log of any kind that kelpie knows: CSV, or a recording of messages.
 
     Parameters
@@ -56,6 +57,11 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     messages : folder of .msg files, for types that the recording doesn't define.
     recover : read what can be read of a damaged recording; `attrs["losses"]` says what was lost.
     strict : refuse messages with a wrong checksum, which are passed over and counted otherwise.
+    pose : instead, columns of a CSV file with poses, such as ["x", "y", "psi"] or ["z=altitude"]:
+        rows of velocities, accelerations and commands, as of `kelpie learn --pose`.
+    inputs : beside `pose`, the inputs (velocities of the pose, commands, ...). Default: the
+        velocities and the commands that are known by name.
+    rate : beside `pose`, rows per second. Default: as poses come, at most 10.
     frame : True for a pandas data frame, False for a dict of arrays (LogArrays). Default: a data
         frame where pandas is installed.
 
@@ -77,11 +83,17 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     if columns is not None and (config is not None or not columns):
         raise ValueError("columns: names of columns are wanted, and no config beside them, which "
                          "names its own")
+    if pose is not None and (config is not None or columns is not None or not pose):
+        raise ValueError("pose: names of columns are wanted, and neither config nor columns beside "
+                         "them")
+    if pose is None and (inputs is not None or rate != 0.0):
+        raise ValueError("inputs: and rate stand beside pose; a config says both otherwise")
     if frame and pandas is None:
         raise ImportError("frame: pandas isn't installed; without it there are arrays (frame=False)")
     found = _kelpie.read_log(existing(path), "" if config is None else existing(config),
                              list(columns or []), clock == "header",
-                             "" if messages is None else os.fspath(messages), recover, strict)
+                             "" if messages is None else os.fspath(messages), recover, strict,
+                             list(pose or []), list(inputs or []), rate)
     log = LogArrays(found["columns"])
     for name, words in found["words"].items():
         log[name] = _with_words(log[name], words)

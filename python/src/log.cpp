@@ -101,7 +101,8 @@ py::dict dict_of(const log::Log& log) {
 }
 
 py::dict read_log(const std::string& file, const std::string& config, const Names& columns,
-                  bool header_clock, const std::string& messages, bool recover, bool strict) {
+                  bool header_clock, const std::string& messages, bool recover, bool strict,
+                  const log::Roles& roles) {
   const bag::ReadMode mode = strict    ? bag::ReadMode::strict
                              : recover ? bag::ReadMode::recover
                                        : bag::ReadMode::usual;
@@ -112,6 +113,8 @@ py::dict read_log(const std::string& file, const std::string& config, const Name
     if (!columns.empty()) {
       log = log::read_columns(source, columns,
                               header_clock ? bag::Clock::header : bag::Clock::receive);
+    } else if (!roles.pose.empty()) {
+      log = log::read_log(source, {}, roles);
     } else if (config.empty() && !bag::is_bag(file)) {
       log.table = log::read_csv(file);  // all of it, whether it can be learned or not
     } else {
@@ -137,9 +140,18 @@ void bind_log(py::module_& module) {
   module.def("log_mistakes", &log_mistakes, py::arg("inputs"), py::arg("targets"), py::arg("x"),
              py::arg("y"), py::arg("t"), py::arg("has_times"), py::arg("states"),
              "What cannot be right in these rows, in words (log/plausibility.hpp).");
-  module.def("read_log", &read_log, py::arg("file"), py::arg("config"), py::arg("columns"),
-             py::arg("header_clock"), py::arg("messages"), py::arg("recover"), py::arg("strict"),
-             "A log as a dict: columns and words by name, units, inputs, targets, time, losses.");
+  module.def(
+      "read_log",
+      [](const std::string& file, const std::string& config, const Names& columns,
+         bool header_clock, const std::string& messages, bool recover, bool strict,
+         const Names& pose, const Names& inputs, double rate_hz) {
+        const log::Roles roles{.inputs = inputs, .rate_hz = rate_hz, .pose = pose};
+        return read_log(file, config, columns, header_clock, messages, recover, strict, roles);
+      },
+      py::arg("file"), py::arg("config"), py::arg("columns"), py::arg("header_clock"),
+      py::arg("messages"), py::arg("recover"), py::arg("strict"), py::arg("pose"),
+      py::arg("inputs"), py::arg("rate"),
+      "A log as a dict: columns and words by name, units, inputs, targets, time, losses.");
 }
 
 }  // namespace kelpie::python

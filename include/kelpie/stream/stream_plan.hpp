@@ -77,12 +77,40 @@ struct StreamPlan {
     std::array<std::string, 3> rates;
     Triple arm_m{};
   };
+  /// Measured poses in place of velocities. A row holds the means of all signals over a window of
+  /// ± half_s, and with the same weights w the velocities and accelerations of the body in the weak
+  /// form (Shinbrot 1957), which differentiates no measurement:
+  ///
+  ///     u = ∫ w Rᵀ dp,    u̇ = −∫ ẇ Rᵀ dp,    w(s) ∝ (1 − s²)³ (3 − 11 s²),  s = (τ − t) / half_s
+  ///
+  /// w is a kernel of order four (Gasser, Müller & Mammitzsch 1985): motion up to the third power
+  /// of time passes unchanged. A linear equation of motion holds for the means without bias.
+  struct Pose {
+    /// Sources of x, y and z along right-handed axes of the world; "": not measured.
+    std::array<std::string, 3> position{};
+    /// Sources of roll, pitch and yaw [rad] in the order of Vector::attitude, "" where not
+    /// measured; a quaternion w, x, y, z; or empty.
+    std::vector<std::string> attitude{};
+    double half_s = 0.0;          ///< half of the window; 0: to be found in a log
+    bool has_tilt_rates = false;  ///< p and q among the columns
+
+    static constexpr std::array<const char*, 6> kVelocities{"u", "v", "w", "p", "q", "r"};
+
+    /// Measured axes, as places in kVelocities: u and v of x, y and yaw, w of z, r of yaw.
+    std::vector<std::size_t> axes() const;
+    /// Columns in the order of a table: velocities, phi, theta and psi of a quaternion, and
+    /// accelerations ("udot").
+    std::vector<std::string> columns() const;
+    std::vector<std::string> accelerations() const;  ///< The last of columns().
+    std::vector<std::string> sources() const;        ///< Names of measured sources.
+  };
 
   std::vector<Source> sources;
   std::vector<Derived> derived;
   std::vector<Vector> vectors;        ///< step 1: conversion to another frame
   std::optional<LeverArm> lever_arm;  ///< step 2: removal of the lever arm
-  std::vector<std::string> inputs;    ///< of a row: names of sources or derivatives
+  std::optional<Pose> pose;           ///< step 3: velocities and accelerations from poses
+  std::vector<std::string> inputs;    ///< of a row: names of sources, derivatives, pose columns
   std::vector<std::string> targets;   ///< of a row, likewise
   DerivativeSettings derivative;
   double rate_hz = 0.0;
@@ -93,7 +121,8 @@ struct StreamPlan {
   std::size_t source(const std::string& name) const;
 
   /// Throws InputError (name) on a rate, gap, wait or filter out of range, a duplicate name, and
-  /// unknown sources of a derivative, vector, lever arm, input or target.
+  /// unknown sources of a derivative, vector, lever arm, pose, input or target, a pose without a
+  /// measured axis, x or y without the other or without a yaw, derivatives beside a pose.
   void validate() const;
 };
 

@@ -6,11 +6,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/core/error.hpp"
+#include "stream/attitude_source.hpp"
 #include "stream/derivative.hpp"
+#include "stream/pose_window.hpp"
 #include "stream/sample_queue.hpp"
 #include "stream/tuning.hpp"
 
@@ -54,9 +58,10 @@ class SampleStream::State {
     std::size_t to = 0;
     double sign = 1.0;
   };
+  enum class ColumnKind { sample, derived, mean, mean_angle, pose };
   struct Column {
-    std::size_t source = 0;
-    bool is_derived = false;
+    std::size_t source = 0;  // or the place among the pose's columns
+    ColumnKind kind = ColumnKind::sample;
   };
   // Velocity samples wait until the rates at their time are known.
   struct Arm {
@@ -69,24 +74,24 @@ class SampleStream::State {
   // The three components of a world vector wait until the attitude at their time is known.
   struct Turn {
     std::array<std::size_t, 3> velocity{};
-    std::vector<std::size_t> attitude;  // three angles, or a quaternion
-    double unit = 1.0;                  // of the angles [rad]
+    AttitudeSource attitude;
     Frame from = Frame::ned;
     Frame to = Frame::frd;
-    std::vector<SampleQueue> waiting;  // of the three components
+    std::vector<SampleQueue> waiting{};  // of the three components
   };
 
   void route_vectors();
   void use_turns();
   void use_arm();
+  void use_pose();
   Column column(const std::string& name) const;
+  Column column_with_pose(const std::string& name) const;
   void follow_clock(double stamp_s);
   bool is_behind(double stamp_s) const;
   void reset();
   bool begin();
   SignalVerdict take(std::size_t source, double stamp_s, double value);
   SignalVerdict take_of_body(std::size_t source, double stamp_s, double value);
-  Triple body_of(const Turn& turn, const Triple& vector, double stamp_s) const;
   void settle_turns();
   void drop_first(Turn& turn);
   void settle_arm();
@@ -110,6 +115,7 @@ class SampleStream::State {
   std::vector<Column> columns_;          // inputs, then targets
   std::vector<double> values_;           // of a row
   Derivative derivative_;
+  std::optional<PoseWindow> pose_;
   double clock_s_;  // newest stamp
   bool has_begun_ = false;
   double next_row_ = 0.0;  // as a multiple of 1 / rate
@@ -140,6 +146,7 @@ SampleStream::State::State(const StreamPlan& plan)
     back_s_[source] = plan_.derivative.back_s();
     known_by_[source] = Interpolation::line;
   }
+  use_pose();
   for (const std::vector<std::string>* const names : {&plan_.inputs, &plan_.targets}) {
     std::ranges::for_each(*names, [&](const auto& name) { columns_.push_back(column(name)); });
   }
@@ -150,10 +157,39 @@ SampleStream::State::State(const StreamPlan& plan)
 }
 
 SampleStream::State::Column SampleStream::State::column(const std::string& name) const {
+  if (plan_.pose) {
+    return column_with_pose(name);
+  }
   const auto derived = std::ranges::find(plan_.derived, name, &StreamPlan::Derived::name);
   return derived == plan_.derived.end()
              ? Column{.source = plan_.source(name)}
-             : Column{.source = plan_.source(derived->of), .is_derived = true};
+             : Column{.source = plan_.source(derived->of), .kind = ColumnKind::derived};
+}
+
+SampleStream::State::Column SampleStream::State::column_with_pose(const std::string& name) const {
+  const std::vector<std::string> columns = plan_.pose->columns();
+  const auto found = std::ranges::find(columns, name);
+  if (found != columns.end()) {
+    return {.source = static_cast<std::size_t>(found - columns.begin()), .kind = ColumnKind::pose};
+  }
+  const std::vector<std::string>& angles = plan_.pose->attitude;
+  const bool is_angle = angles.size() == 3 && std::ranges::count(angles, name) > 0;
+  return {.source = plan_.source(name),
+          .kind = is_angle ? ColumnKind::mean_angle : ColumnKind::mean};
+}
+
+// Every source of a row with a pose is used over the whole window.
+void SampleStream::State::use_pose() {
+  if (!plan_.pose) {
+    return;
+  }
+  require(plan_.pose->half_s > 0.0, "window",
+          "has to be a number of s beside a pose; one to be found takes a log");
+  pose_.emplace(plan_, most_kept(plan_));
+  for (std::size_t k = 0; k < signals_.size(); ++k) {
+    ahead_s_[k] = std::max(ahead_s_[k], plan_.pose->half_s);
+    back_s_[k] = std::max(back_s_[k], plan_.pose->half_s);
+  }
 }
 
 SignalVerdict SampleStream::State::feed(std::size_t source, double stamp_s, double value) {
@@ -314,12 +350,28 @@ const SampleRow* SampleStream::State::next() {
 }
 
 double SampleStream::State::value(const Column& column, double t) {
+  if (column.kind == ColumnKind::pose) {
+    return pose_->value(column.source);
+  }
   const SignalHistory& signal = signals_[column.source];
-  return column.is_derived ? derivative_.at(signal, t)
-                           : signal.at(t, plan_.sources[column.source].between);
+  switch (column.kind) {
+    case ColumnKind::derived:
+      return derivative_.at(signal, t);
+    case ColumnKind::mean:
+      return pose_->mean(signal, plan_.sources[column.source].between);
+    case ColumnKind::mean_angle:
+      return pose_->mean_angle(signal);
+    case ColumnKind::pose:
+    case ColumnKind::sample:
+      break;
+  }
+  return signal.at(t, plan_.sources[column.source].between);
 }
 
 void SampleStream::State::make_row(double t) {
+  if (pose_) {
+    pose_->move_to(signals_, t);
+  }
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     values_[i] = value(columns_[i], t);
   }
@@ -378,16 +430,16 @@ void SampleStream::State::use_turns() {
     if (vector.attitude.empty()) {
       continue;
     }
-    Turn& turn = turns_.emplace_back();
-    turn.from = vector.from;
-    turn.to = vector.to;
-    turn.unit = vector.is_in_degrees ? kDegree : 1.0;
+    std::vector<std::size_t> attitude;
+    for (const std::string& name : vector.attitude) {
+      attitude.push_back(plan_.source(name));
+    }
+    const double unit = vector.is_in_degrees ? kDegree : 1.0;
+    Turn& turn = turns_.emplace_back(
+        Turn{.attitude = {std::move(attitude), unit, true}, .from = vector.from, .to = vector.to});
     for (std::size_t part = 0; part < 3; ++part) {
       turn.velocity[part] = plan_.source(vector.columns[part]);
       turn.waiting.emplace_back(plan_.sources[turn.velocity[part]].keep);
-    }
-    for (const std::string& name : vector.attitude) {
-      turn.attitude.push_back(plan_.source(name));
     }
   }
 }
@@ -447,41 +499,6 @@ void SampleStream::State::settle_first(std::size_t part) {
                                     without_lever_arm(velocity, rates, arm_.arm_m)[part]);
 }
 
-// Between two samples an angle goes the short way round.
-Triple SampleStream::State::body_of(const Turn& turn, const Triple& vector, double stamp_s) const {
-  std::array<double, 4> before{};
-  std::array<double, 4> step{};
-  double share = 0.0;
-  for (std::size_t i = 0; i < turn.attitude.size(); ++i) {
-    const SignalHistory& signal = signals_[turn.attitude[i]];
-    const double t = stamp_s - signal.lag_s();
-    before[i] = signal.at(t, Interpolation::line);
-    const std::size_t after = signal.first_after(t);
-    if (std::isfinite(before[i]) && after > 0 && after < signal.size()) {
-      const double begin_s = signal.time_s(after - 1);
-      before[i] = signal.value(after - 1);
-      step[i] = signal.value(after) - before[i];
-      share = (t - begin_s) / (signal.time_s(after) - begin_s);
-    }
-    if (turn.attitude.size() == 3) {
-      before[i] = turn.unit * before[i] +
-                  share * std::remainder(turn.unit * step[i], 2.0 * std::numbers::pi);
-    }
-  }
-  if (turn.attitude.size() == 3) {
-    return in_body(vector, Triple{before[0], before[1], before[2]});
-  }
-  double along = 0.0;  // a quaternion and its opposite are one attitude
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    along += before[i] * (before[i] + step[i]);
-  }
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const double next = along < 0.0 ? -(before[i] + step[i]) : before[i] + step[i];
-    before[i] += share * (next - before[i]);
-  }
-  return in_body(vector, before);
-}
-
 // All three are of one message; where one is missing, the others are nothing.
 void SampleStream::State::settle_turns() {
   for (Turn& turn : turns_) {
@@ -495,7 +512,7 @@ void SampleStream::State::settle_turns() {
         drop_first(turn);
         continue;
       }
-      const bool is_ready = std::ranges::all_of(turn.attitude, [&](std::size_t source) {
+      const bool is_ready = std::ranges::all_of(turn.attitude.places(), [&](std::size_t source) {
         return is_known(source, stamp_s - signals_[source].lag_s(), Interpolation::line);
       });
       if (!is_ready) {
@@ -505,7 +522,7 @@ void SampleStream::State::settle_turns() {
       for (std::size_t part = 0; part < 3; ++part) {
         vector[part] = turn.waiting[part].pop().value;
       }
-      vector = body_of(turn, vector, stamp_s);
+      vector = turn.attitude.in_body(signals_, vector, stamp_s);
       vector = converted(vector, turn.from == Frame::ned ? Frame::frd : Frame::flu, turn.to);
       for (std::size_t part = 0; part < 3; ++part) {
         take_of_body(turn.velocity[part], stamp_s, vector[part]);

@@ -17,6 +17,9 @@ inline constexpr struct Tuning {
   /// [s] A sample this close to an edge of a window is inside; stamps have nanoseconds.
   double window_rounding_s = 1e-9;
 
+  /// Least increments of a pose's source in a window: the weights change sign five times.
+  std::size_t pose_increments = 6;
+
   // Ranges of settings (docs/reference/limits.md).
   double fastest_hz = 1e6;         ///< rows per second
   double longest_gap_s = 1e6;      ///< 12 days

@@ -156,6 +156,12 @@ StreamPlan plan_of(const log::LogConfig& config) {
                      "names no topics; it takes [log.states] and [log.commands], as in u = "
                      "\"/odom:twist.twist.linear.x\"");
   }
+  if (config.plan.pose) {
+    throw InputError({.file = config.source, .line = 0, .field = "log.pose"},
+                     "makes no live rows: a velocity from poses is known half a window late, too "
+                     "late to predict from. Learn the recording by `kelpie learn`; live rows take "
+                     "velocities in [log.states]");
+  }
   if (!config.roles.time.empty()) {
     throw InputError({.file = config.source, .line = 0, .field = "log.time"},
                      "belongs to CSV files; messages have times of their own");

@@ -137,6 +137,9 @@ struct Roles {
   /// (Unit::in_si) and then tell the units of the converted columns.
   std::map<std::string, std::string> units{};
   std::map<std::string, KnownActuator> actuators{};  ///< of commands
+  /// Columns of a table that are its poses, by names that tell their part ("x", "psi", "depth":
+  /// pose_part_by_name()) or as part=column; empty: none.
+  std::vector<std::string> pose{};
 };
 
 /// The unit in the SI, and what one of the given unit is there (Unit::in_si). Throws InputError

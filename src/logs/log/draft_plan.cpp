@@ -134,7 +134,7 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
   }
   plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
   plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
-  if (plan.window_s > stream::kTuning.longest_window_s) {
+  if (plan.pose.empty() && plan.window_s > stream::kTuning.longest_window_s) {
     plan.open.push_back(fmt::format(
         "velocities come every {:.3g} s, too slowly for accelerations, which are slopes over six "
         "samples and {:g} s at most; a column of measured accelerations can be named by --targets",
@@ -164,7 +164,7 @@ void say_what_is_slow(const SignalRates& rates, DraftPlan& plan) {
                     "which limits the model: record at 10 Hz or more",
                     rates.commands_hz));
   }
-  if (rates.moving_hz < kTuning.slow_hz) {
+  if (rates.moving_hz < kTuning.slow_hz && plan.pose.empty()) {
     plan.remarks.push_back(fmt::format(
         "velocities come at {:.2g} Hz: accelerations are slopes over {:.2g} s, and what is "
         "faster can't be seen",
@@ -246,6 +246,9 @@ class Planner {
     }
     if (rates) {
       take_motion(*rates, velocity ? 3 : 0);
+    }
+    if (!velocity && !rates && !is_asked(Part::velocity) && !is_asked(Part::rates)) {
+      take_pose();
     }
     require_motion();
     if (commands) {
@@ -559,7 +562,102 @@ class Planner {
         is_angles && is_in_degrees ? ", angles = \"deg\"" : ""));
   }
 
+  // The parts of a pose that one topic, or a table, has by name.
+  std::map<std::string, CandidateColumn> pose_of(const bag::TopicReport& topic) const {
+    constexpr std::array<std::string_view, 14> kOther{
+        "cmd",   "command", "desired",  "ref",   "target", "setpoint", "rate",
+        "speed", "vel",     "velocity", "accel", "true",   "error",    "covariance"};
+    std::map<std::string, CandidateColumn> parts;
+    for (const bag::FieldRange& field : topic.fields) {
+      const std::vector<std::string> words = words_of(field.path);
+      const bool is_other = std::ranges::any_of(words, [&](const std::string& word) {
+        return std::ranges::find(kOther, word) != kOther.end();
+      });
+      const std::optional<std::string> part =
+          is_other || field.finite == 0 || !field.elements.empty() || !can_be_written(field.path) ||
+                  field.path.find_first_of("\"\\") != std::string::npos
+              ? std::nullopt
+              : pose_part_by_name(field.path);
+      if (part) {
+        parts.try_emplace(
+            *part, CandidateColumn{
+                       .name = topic.name.empty() ? field.path : topic.name + ":" + field.path,
+                       .topic = topic.name,
+                       .unit = field.unit,
+                       .low = field.low,
+                       .high = field.high,
+                       .rate_hz = topic.rate_hz * static_cast<double>(field.finite) /
+                                  static_cast<double>(std::max<std::size_t>(topic.messages, 1)),
+                       .stamps = topic.clock_offset});
+      }
+    }
+    const bool is_quaternion = parts.contains("qw") && parts.contains("qx") &&
+                               parts.contains("qy") && parts.contains("qz");
+    std::erase_if(parts, [&](const auto& part) {
+      const bool is_angle = part.first.size() > 1 && part.first[0] != 'q';
+      return is_quaternion ? is_angle : part.first[0] == 'q';
+    });
+    const bool has_plane =
+        parts.contains("x") && parts.contains("y") && (is_quaternion || parts.contains("yaw"));
+    if (!has_plane) {
+      parts.erase("x");
+      parts.erase("y");
+    }
+    const bool moves = std::ranges::any_of(parts, [](const auto& part) {
+      return part.second.varies() && part.first != "roll" && part.first != "pitch";
+    });
+    return moves ? parts : std::map<std::string, CandidateColumn>{};
+  }
+
+  // Where no velocity is known, poses tell the motion.
+  void take_pose() {
+    std::map<std::string, CandidateColumn> best;
+    std::vector<std::string> rivals;
+    for (const bag::TopicReport& topic : report_.topics) {
+      std::map<std::string, CandidateColumn> parts = pose_of(topic);
+      if (parts.size() > best.size()) {
+        best = std::move(parts);
+        rivals = {topic.name};
+      } else if (!parts.empty() && parts.size() == best.size()) {
+        rivals.push_back(topic.name);
+      }
+    }
+    if (rivals.size() > 1) {
+      plan_.open.push_back(fmt::format("poses: {}: which of them?", join_text(rivals, ", or ")));
+      asked_.insert(Part::velocity);
+      return;
+    }
+    DraftPlan::Group group;
+    std::vector<std::string> texts;
+    for (const auto& [part, column] : best) {
+      add_line(group, part, column);
+      texts.push_back(fmt::format("{} = \"{}\"", part, column.name));
+      moving_rate_hz_ = std::min(moving_rate_hz_, column.rate_hz);
+    }
+    const bool has_yaw = best.contains("yaw") || best.contains("qw");
+    for (const auto& [axis, is_there] :
+         {std::pair("u", best.contains("x")), std::pair("v", best.contains("x")),
+          std::pair("w", best.contains("z")), std::pair("r", has_yaw)}) {
+      if (is_there) {
+        plan_.inputs.emplace_back(axis);
+        plan_.targets.push_back(std::string(axis) + "dot");
+      }
+    }
+    for (const char* const tilt : {"roll", "pitch"}) {
+      if (best.contains(tilt) && best.at(tilt).varies()) {
+        plan_.inputs.emplace_back(tilt);
+      }
+    }
+    if (!best.empty()) {
+      plan_.pose = "{" + join_text(texts, ", ") + "}";
+      plan_.taken.emplace_back("no velocities are known; poses tell the motion");
+    }
+  }
+
   void require_motion() {
+    if (!plan_.pose.empty()) {
+      return;
+    }
     if (moving_.empty() && !is_asked(Part::velocity) && !is_asked(Part::rates)) {
       plan_.open.push_back(none_known(Part::velocity, "states"));
     }

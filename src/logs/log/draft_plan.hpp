@@ -35,6 +35,7 @@ struct DraftPlan {
   double gap_s = 1.0;
   double window_s = 0.5;
   std::vector<std::string> vectors{};  ///< in the syntax of [log]
+  std::string pose{};                  ///< in the syntax of [log]; "": velocities are known
   std::vector<Line> units{};           ///< `from` is the unit
   std::vector<Group> states{};
   std::vector<Group> commands{};

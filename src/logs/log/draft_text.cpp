@@ -76,13 +76,19 @@ std::string keys_text(const DraftPlan& plan, const std::string& definitions) {
   if (plan.rate_hz > 0.0) {
     text += fmt::format("rate = {:.4g}  # rows per second: {}\n", plan.rate_hz, plan.rate_why);
   }
-  if (!plan.derived.empty()) {
+  if (!plan.derived.empty() || !plan.pose.empty()) {
     if (plan.is_of_bag) {
       text += plan.clock == bag::Clock::header
                   ? "clock = \"header\"  # all these messages have their senders' time\n"
                   : "clock = \"receive\"  # not all messages have a sender's time of one clock\n";
     }
     text += fmt::format("gap = {:.4g}  # s: longer silences aren't bridged\n", plan.gap_s);
+  }
+  if (!plan.pose.empty()) {
+    text += "pose = " + plan.pose + "\n";
+    text += "window = \"auto\"  # s: velocities and accelerations are integrals over so long\n";
+  }
+  if (!plan.derived.empty()) {
     text +=
         fmt::format("window = {:.4g}  # s: accelerations are slopes over so long\n", plan.window_s);
     text +=

@@ -171,6 +171,24 @@ constexpr std::array kVelocityNames = std::to_array<VelocityNames>({
     {"nav_speed", 0},
 });
 
+// Parts of a pose, with the words for each.
+struct PoseWords {
+  std::string_view part;
+  std::string_view words;
+};
+constexpr std::array kPoseWords = std::to_array<PoseWords>({
+    {"x", "x px pos_x position_x pose_x north northing"},
+    {"y", "y py pos_y position_y pose_y east easting"},
+    {"z", "z pz pos_z position_z pose_z depth down"},
+    {"roll", "roll phi"},
+    {"pitch", "pitch theta"},
+    {"yaw", "yaw psi heading hdg compass"},
+    {"qw", "qw orientation_w"},
+    {"qx", "qx orientation_x"},
+    {"qy", "qy orientation_y"},
+    {"qz", "qz orientation_z"},
+});
+
 constexpr std::array kTimes = std::to_array<std::string_view>(
     {"timestamp", "time_s", "t_s", "times", "secs", "seconds", "sec", "elapsed", "elapsed_time",
      "elapsed_s", "rosbag_time", "rosbagtimestamp", "clock", "date", "datetime", "unix_time"});
@@ -290,6 +308,27 @@ std::optional<std::size_t> velocity_by_name(std::string_view name) {
   }
   const std::optional<std::size_t> axis = velocity_axis(words);
   return axis ? axis : velocity_axis(name);
+}
+
+std::optional<std::string> pose_part_by_name(std::string_view name) {
+  std::vector<std::string> words = words_of(name.substr(name.rfind(':') + 1));
+  if (!words.empty() && (words.back() == "deg" || words.back() == "rad" || words.back() == "m")) {
+    words.pop_back();
+  }
+  for (const std::size_t count : {std::size_t{2}, std::size_t{1}}) {
+    if (words.size() < count) {
+      continue;
+    }
+    const std::string last =
+        join_text(std::vector(words.end() - static_cast<std::ptrdiff_t>(count), words.end()), "_");
+    for (const PoseWords& known : kPoseWords) {
+      const std::vector<std::string> all = split_text(std::string(known.words), ' ');
+      if (std::ranges::find(all, last) != all.end()) {
+        return std::string(known.part);
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace kelpie::log

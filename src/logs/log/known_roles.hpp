@@ -61,6 +61,10 @@ std::vector<std::string> expanded(std::string_view fields);
 /// gives thruster, left, cmd.
 std::vector<std::string> words_of(std::string_view name);
 
+/// A part of a pose by the last words of a name: "x" of px, pos_x and north; "z" of depth; "yaw" of
+/// psi and heading; roll, pitch, qw, qx, qy, qz. Empty: none.
+std::optional<std::string> pose_part_by_name(std::string_view name);
+
 /// The axis of a velocity from the name, 0 to 5 for u, v, w, p, q, r.
 std::optional<std::size_t> velocity_by_name(std::string_view name);
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "core/text.hpp"
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
+#include "log/known_roles.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -54,12 +57,22 @@ Frame frame_of(const file::TomlNode& value) {
   throw InputError({.file = config.source, .field = key}, message);
 }
 
+constexpr double kRadInADegree = std::numbers::pi / 180.0;
+constexpr std::array<const char*, 10> kPoseParts{"x",   "y",  "z",  "roll", "pitch",
+                                                 "yaw", "qw", "qx", "qy",   "qz"};
+
+// Sources of a pose by their part.
+struct PoseParts {
+  std::map<std::string, std::string> names{};
+  bool is_in_degrees = false;
+};
+
 class LogConfigReader {
  public:
   explicit LogConfigReader(LogConfig& config) : config_(config) {}
 
+  // In the order of the table below: what is derived or late has to be there already.
   void read(const file::TomlNode& log) {
-    // In the order of reading: what is derived or late has to be there already.
     const std::vector<std::pair<std::string, std::function<void(const TomlNode&)>>> readers{
         {"inputs",
          [&](const TomlNode& value) { roles().inputs = file::texts_of(value, kColumns); }},
@@ -77,6 +90,7 @@ class LogConfigReader {
          [&](const TomlNode& value) { roles().ignored = file::texts_of(value, kColumns); }},
         {"states", [&](const TomlNode& value) { read_sources(value, Interpolation::line); }},
         {"commands", [&](const TomlNode& value) { read_sources(value, Interpolation::hold); }},
+        {"pose", [&](const TomlNode& value) { read_pose(value); }},
         {"scale", [&](const TomlNode& value) { read_scales(value); }},
         {"actuators", [&](const TomlNode& value) { read_actuators(value); }},
         {"derived", [&](const TomlNode& value) { read_derived(value); }},
@@ -99,7 +113,7 @@ class LogConfigReader {
                                           ? FilterWindow::centred
                                           : FilterWindow::causal;
          }},
-        {"window", [&](const TomlNode& value) { plan().derivative.window_s = value.number(); }},
+        {"window", [&](const TomlNode& value) { read_window(value); }},
         {"degree",
          [&](const TomlNode& value) {
            plan().derivative.degree = static_cast<int>(value.count());
@@ -165,6 +179,94 @@ class LogConfigReader {
            .from = source.text("a topic and field, as in \"/odom:twist.twist.linear.x\""),
            .between = between});
       config_.places.emplace(plan().sources.back().from, source.place());
+    }
+  }
+
+  // ["x", "y", "psi"], or {x = "/mocap:position.x", …, angles = "deg"}
+  void read_pose(const file::TomlNode& value) {
+    PoseParts parts;
+    if (value.type() == file::TomlNode::Type::list) {
+      for (const std::string& name :
+           file::texts_of(value, "a list of columns, as in [\"x\", \"y\", \"yaw\"]")) {
+        const std::optional<std::string> part = pose_part_by_name(source_text(name));
+        if (!part) {
+          value.refuse(
+              "'" + name + "' names no part of a pose; write {x = \"" + name + "\"} with one of " +
+              join_text(std::vector<std::string>(kPoseParts.begin(), kPoseParts.end()), ", "));
+        }
+        add_part(value, *part, name, name, parts);
+      }
+    } else {
+      std::vector<std::string> keys(kPoseParts.begin(), kPoseParts.end());
+      keys.insert(keys.end(), {"depth", "angles"});
+      value.table(keys);
+      for (const file::TomlNode& part : value.members()) {
+        if (part.key() != "angles") {
+          add_part(part, part.key() == "depth" ? "z" : part.key(), part.key(),
+                   part.text("a topic and field, or a column"), parts);
+        }
+      }
+      parts.is_in_degrees = value.has("angles") && choice(value["angles"], {"rad", "deg"}) == 1;
+    }
+    plan().pose = pose_of(value, parts);
+  }
+
+  // What the user calls by a short name, in the words of the log.
+  std::string source_text(const std::string& name) {
+    const auto known = std::ranges::find(plan().sources, name, &SamplingPlan::Source::name);
+    return known != plan().sources.end() && !pose_part_by_name(name) ? known->from : name;
+  }
+
+  // The source of a part: a state of that name, or a new one called `name`.
+  void add_part(const file::TomlNode& at, const std::string& part, const std::string& name,
+                const std::string& from, PoseParts& parts) {
+    auto source = std::ranges::find(plan().sources, from, &SamplingPlan::Source::name);
+    if (source == plan().sources.end()) {
+      plan().sources.push_back({.name = name, .from = from});
+      config_.places.emplace(from, at.place());
+      source = std::prev(plan().sources.end());
+    }
+    if (!parts.names.emplace(part, source->name).second) {
+      at.refuse(part + " of the pose is named twice, by " + parts.names.at(part) + " and " +
+                source->name);
+    }
+  }
+
+  StreamPlan::Pose pose_of(const file::TomlNode& value, const PoseParts& parts) {
+    const auto name_of = [&](const std::string& part) {
+      const auto found = parts.names.find(part);
+      return found == parts.names.end() ? std::string() : found->second;
+    };
+    StreamPlan::Pose pose{.position = {name_of("x"), name_of("y"), name_of("z")}};
+    const std::vector<std::string> angles{name_of("roll"), name_of("pitch"), name_of("yaw")};
+    const std::vector<std::string> quaternion{name_of("qw"), name_of("qx"), name_of("qy"),
+                                              name_of("qz")};
+    const auto is_named = [](const std::string& name) { return !name.empty(); };
+    const bool has_angles = std::ranges::any_of(angles, is_named);
+    const bool has_quaternion = std::ranges::any_of(quaternion, is_named);
+    if (has_angles && has_quaternion) {
+      value.refuse("has angles and a quaternion; one of them is the attitude");
+    }
+    pose.attitude = has_quaternion ? quaternion : has_angles ? angles : pose.attitude;
+    for (SamplingPlan::Source& source : plan().sources) {
+      if (parts.is_in_degrees && std::ranges::count(angles, source.name) > 0) {
+        source.scale *= kRadInADegree;
+      }
+    }
+    return pose;
+  }
+
+  // Of a pose the whole window, else of derivatives.
+  void read_window(const file::TomlNode& value) {
+    if (!plan().pose) {
+      plan().derivative.window_s = value.number();
+    } else if (value.type() == file::TomlNode::Type::text) {
+      choice(value, {"auto"});
+    } else {
+      plan().pose->half_s = 0.5 * value.number("\"auto\" or a number of s");
+      if (plan().pose->half_s <= 0.0) {
+        value.refuse("has to be more than 0 s");
+      }
     }
   }
 
@@ -346,6 +448,19 @@ void convert_sources(const LogConfig& config, const Roles& roles, SamplingPlan& 
 
 }  // namespace
 
+namespace {
+
+// p and q are columns where somebody names them.
+void use_tilt_rates(const Roles& roles, StreamPlan::Pose& pose) {
+  for (const auto* const names : {&roles.inputs, &roles.targets, &roles.also}) {
+    for (const char* const rate : {"p", "q", "pdot", "qdot"}) {
+      pose.has_tilt_rates = pose.has_tilt_rates || std::ranges::count(*names, rate) > 0;
+    }
+  }
+}
+
+}  // namespace
+
 SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles) {
   SamplingPlan plan = config.plan;
   convert_sources(config, roles, plan);
@@ -355,6 +470,10 @@ SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles) {
   }
   // Lags go by the targets; where none are named, by the derivatives.
   plan.responses = roles.targets;
+  if (plan.pose) {
+    use_tilt_rates(roles, *plan.pose);
+    plan.responses = roles.targets.empty() ? plan.pose->accelerations() : roles.targets;
+  }
   for (const StreamPlan::Derived& derived : plan.derived) {
     if (roles.targets.empty()) {
       plan.responses.push_back(derived.name);
@@ -369,14 +488,17 @@ StreamPlan stream_plan(const LogConfig& config, const Roles& roles) {
   columns.source = config.source;
   columns.names = {"t"};
   for (const StreamPlan::Source& source : plan.sources) {
-    columns.names.push_back(source.name);
     if (!source.lag_s) {
       refuse(config, "log.lag." + source.name,
              "\"auto\" takes a whole log; give the lag in s, as `kelpie convert` finds it");
     }
   }
-  std::ranges::transform(plan.derived, std::back_inserter(columns.names),
-                         &StreamPlan::Derived::name);
+  if (plan.pose && plan.pose->half_s == 0.0) {
+    refuse(config, "log.window",
+           "of a pose takes a whole log; give the window in s, as `kelpie convert` finds it");
+  }
+  const std::vector<std::string> sampled = sampled_columns(plan);
+  columns.names.insert(columns.names.end(), sampled.begin(), sampled.end());
   const Roles parts = guess_roles(columns, roles);
   plan.inputs = parts.inputs;
   plan.targets = parts.targets;

@@ -16,6 +16,7 @@
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "log/held_table.hpp"
+#include "log/pose_config.hpp"
 #include "log/signal.hpp"
 #include "motion/signal_names.hpp"
 
@@ -68,6 +69,13 @@ std::map<std::string, std::string> all_units(std::map<std::string, std::string> 
   for (const StreamPlan::Derived& derived : plan.derived) {
     if (const auto of = found.find(derived.of); of != found.end()) {
       found[derived.name] = of->second + "/s";
+    }
+  }
+  if (plan.pose) {
+    for (const std::size_t axis : plan.pose->axes()) {
+      const std::string name = StreamPlan::Pose::kVelocities[axis];
+      found[name] = axis < 3 ? "m/s" : "rad/s";
+      found[name + "dot"] = axis < 3 ? "m/s^2" : "rad/s^2";
     }
   }
   const auto converted = [&](const std::string& column, const std::string& text) {
@@ -265,6 +273,9 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
            "belongs to CSV files and MATLAB's; a bag has times of its own");
   }
   Log log{.table = {}, .roles = roles};
+  if (plan.pose) {
+    add_pose_targets(*plan.pose, log.roles);
+  }
   BagSignals found;
   if (is_of_bag) {
     found = signals_of_bag(source, config, times);
@@ -319,7 +330,19 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
     table = read_csv(source.path);
   }
   if (config.makes_samples()) {
+    if (!roles.pose.empty()) {
+      refuse(config.source, "--pose",
+             "stands beside a [log] that names its signals; write pose = {...} there");
+    }
     return sampled_log(source, is_of_bag, std::move(table), config, roles);
+  }
+  if (!roles.pose.empty()) {
+    if (is_of_bag) {
+      refuse(source.path, "--pose",
+             "names columns of a CSV file; for a recording write pose = {...} in [log]");
+    }
+    const LogConfig with_pose = pose_config(table, roles);
+    return sampled_log(source, is_of_bag, std::move(table), with_pose, roles);
   }
   std::string why_not;
   if (!is_of_bag && can_be_taken(table, roles, why_not)) {

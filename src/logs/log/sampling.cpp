@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -19,16 +20,13 @@ namespace {
 // The plan of a stream that keeps all there is, and gives every column.
 StreamPlan plan_for(const SamplingPlan& plan, const std::vector<Signal>& signals) {
   StreamPlan whole = plan;
-  whole.inputs.clear();
   whole.targets.clear();
   for (std::size_t k = 0; k < signals.size(); ++k) {
     StreamPlan::Source& source = whole.sources[k];
     source.keep = std::max<std::size_t>(signals[k].values.size(), 1);
     source.lag_s = source.lag_s.value_or(0.0);
-    whole.inputs.push_back(source.name);
   }
-  std::ranges::transform(whole.derived, std::back_inserter(whole.inputs),
-                         &StreamPlan::Derived::name);
+  whole.inputs = sampled_columns(plan);
   return whole;
 }
 
@@ -42,6 +40,7 @@ class Sampler {
     std::ranges::for_each(signals_, sort_by_time);
     std::ranges::for_each(signals_, [&](const Signal& signal) { require_one_clock(signal); });
     require_whole_vectors();
+    std::optional<PoseWindowChoice> window = choose_window();
     std::optional<TopicAlignment> lags;
     double lag_until_s = 0.0;
     if (!std::ranges::all_of(plan_.sources, [](const auto& s) { return s.lag_s.has_value(); })) {
@@ -53,6 +52,8 @@ class Sampler {
     }
     StreamedSignals streamed(stream_plan_, signals_);
     Samples samples;
+    samples.report.pose_half_s = stream_plan_.pose ? stream_plan_.pose->half_s : 0.0;
+    samples.report.window = std::move(window);
     samples.report.lags = std::move(lags);
     samples.report.lag_until_s = lag_until_s;
     report_on(streamed, samples.report);
@@ -89,8 +90,31 @@ class Sampler {
     }
   }
 
+  // Of a pose without a window.
+  std::optional<PoseWindowChoice> choose_window() {
+    if (!stream_plan_.pose || stream_plan_.pose->half_s > 0.0) {
+      return std::nullopt;
+    }
+    double first_s = std::numeric_limits<double>::infinity();
+    double last_s = -first_s;
+    for (const Signal& signal : signals_) {
+      if (!signal.times_s.empty()) {
+        first_s = std::min(first_s, signal.times_s.front());
+        last_s = std::max(last_s, signal.times_s.back());
+      }
+    }
+    PoseWindowChoice choice =
+        find_pose_window(stream_plan_, signals_, first_s + plan_.lag_part * (last_s - first_s));
+    stream_plan_.pose->half_s = choice.half_s;
+    return choice;
+  }
+
   bool is_response(const std::string& name) const {
     return std::ranges::find(plan_.responses, name) != plan_.responses.end();
+  }
+
+  bool is_pose_velocity(const std::string& name) const {
+    return plan_.pose && std::ranges::count(StreamPlan::Pose::kVelocities, name) > 0;
   }
 
   TopicAlignmentProblem lag_problem(StreamedSignals& streamed) const {
@@ -104,12 +128,15 @@ class Sampler {
     problem.times_s = first_of(streamed.times_s);
     problem.step_s = 0.5 / plan_.rate_hz;
     for (std::size_t column = 0; column < streamed.columns.size(); ++column) {
-      const bool is_source = column < signals_.size();
-      if (is_source && !plan_.sources[column].lag_s) {
-        add_to_group(problem, column, streamed.signal(column));
-      } else if (is_response(stream_plan_.inputs[column])) {
+      const std::string& name = stream_plan_.inputs[column];
+      const auto found = std::ranges::find(plan_.sources, name, &StreamPlan::Source::name);
+      const auto source = static_cast<std::size_t>(found - plan_.sources.begin());
+      const bool is_source = found != plan_.sources.end();
+      if (is_source && !found->lag_s) {
+        add_to_group(problem, source, streamed.signal(source));
+      } else if (is_response(name)) {
         problem.responses.push_back(first_of(streamed.columns[column]));
-      } else if (is_source && plan_.sources[column].between == Interpolation::line) {
+      } else if ((is_source && found->between == Interpolation::line) || is_pose_velocity(name)) {
         problem.background.push_back(first_of(streamed.columns[column]));
       }
     }
@@ -201,6 +228,25 @@ class Sampler {
 };
 
 }  // namespace
+
+std::vector<std::string> sampled_columns(const StreamPlan& plan) {
+  std::vector<std::string> names;
+  const auto is_of_pose = [&](const std::string& name) {
+    return plan.pose &&
+           (std::ranges::count(plan.pose->position, name) > 0 ||
+            (plan.pose->attitude.size() == 4 && std::ranges::count(plan.pose->attitude, name) > 0));
+  };
+  for (const StreamPlan::Source& source : plan.sources) {
+    if (!is_of_pose(source.name)) {
+      names.push_back(source.name);
+    }
+  }
+  std::ranges::transform(plan.derived, std::back_inserter(names), &StreamPlan::Derived::name);
+  const std::vector<std::string> of_pose =
+      plan.pose ? plan.pose->columns() : std::vector<std::string>{};
+  names.insert(names.end(), of_pose.begin(), of_pose.end());
+  return names;
+}
 
 Samples sample(const SamplingPlan& plan, std::vector<Signal> signals, const std::string& source) {
   try {

@@ -8,6 +8,7 @@
 
 #include "kelpie/stream/stream_plan.hpp"
 #include "log/dataset.hpp"
+#include "log/pose_window_search.hpp"
 #include "log/signal.hpp"
 #include "log/topic_alignment.hpp"
 
@@ -40,6 +41,8 @@ struct SamplingReport {
   };
   std::vector<OfSource> sources;
   std::vector<OfDerived> derived;
+  double pose_half_s = 0.0;                  ///< half of the pose's window; 0: no pose
+  std::optional<PoseWindowChoice> window{};  ///< how the window was found; empty: given
   std::optional<TopicAlignment> lags;
   double lag_until_s = 0.0;  ///< end of the rows used for the estimation of lags
   double rate_hz = 0.0;      ///< of the rows
@@ -54,8 +57,13 @@ struct Samples {
   SamplingReport report;
 };
 
+/// The columns of a sampled table besides t: sources without positions and quaternions of a pose,
+/// then derivatives and the pose's columns.
+std::vector<std::string> sampled_columns(const StreamPlan& plan);
+
 /// Feeds signals to a SampleStream in the order of stamps, and collects the rows up to the end of
-/// the first signal to end. A second pass follows an estimation of lags. `signals` belong to
+/// the first signal to end. A pose's open window is found first, then open lags, in the rows up to
+/// `lag_part`. `signals` belong to
 /// plan.sources, in order, in seconds of a common clock; messages call the log `source`. Throws
 /// InputError (source, then name, topic or field): as SampleStream and align_topics() do; a signal
 /// without a finite value; a step back in time longer than the gap, or a step ahead longer than 30

@@ -46,6 +46,18 @@ inline constexpr struct Tuning {
     double fastest_hz = 200.0;  ///< of rows, without a word; by hand
   } plausibility;
 
+  /// The window of a pose (find_pose_window()).
+  struct PoseWindow {
+    int pieces = 25;               ///< as the split `pieces`
+    int folds = 5;                 ///< by hand
+    double ridge = 1e-6;           ///< of columns with unit variance; by hand
+    double least_steps = 3.5;      ///< half of the shortest window, in steps of the slowest source
+    double windows = 40.0;         ///< at least so many halves in the log; by hand
+    double rows_per_window = 8.0;  ///< more tell hardly more; by hand
+    std::ptrdiff_t rows_per_coefficient = 4;  ///< by hand
+    double least_gain = 1e-4;  ///< of R², where the commands explain nothing; by hand
+  } pose_window;
+
   // Drafts (docs/howto/logs.md).
   double usual_rate_hz = 10.0;     ///< of rows; by hand
   double fastest_rate_hz = 50.0;   ///< of rows of a short log; by hand

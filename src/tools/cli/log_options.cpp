@@ -135,7 +135,7 @@ void LogOptions::add_to(CLI::App& command) {
 
 bool LogOptions::has_columns() const {
   return !inputs.empty() || !targets.empty() || !ignored.empty() || !time.empty() ||
-         rate_hz != 0.0 || !units.empty();
+         rate_hz != 0.0 || !units.empty() || !pose.empty();
 }
 
 void LogOptions::add_columns_to(CLI::App& command) {
@@ -146,6 +146,7 @@ void LogOptions::add_columns_to(CLI::App& command) {
   add_list(&command, "--ignore", ignored, "columns that are neither, separated by commas");
   add_clock_options(command, time, rate_hz);
   add_units_option(command, units);
+  add_pose_option(command, pose);
 }
 
 log::Roles LogOptions::over(const log::Roles& file) const {
@@ -167,6 +168,7 @@ log::Roles LogOptions::over(const log::Roles& file) const {
     roles.ignored = ignored;
   }
   roles.also = also;
+  roles.pose = pose;
   add_units(units, roles.units);
   return roles;
 }
@@ -180,6 +182,7 @@ std::string LogOptions::text() const {
   add("--time", time);
   add("--rate", rate_hz > 0.0 ? fmt::format("{:g}", rate_hz) : "");
   add("--units", join_text(units, ","));
+  add("--pose", join_text(pose, ","));
   return text;
 }
 
@@ -347,6 +350,12 @@ std::vector<std::pair<std::string, double>> known_thrusts(const std::vector<std:
     known.emplace_back(name, value);
   }
   return known;
+}
+
+void add_pose_option(CLI::App& command, std::vector<std::string>& pose) {
+  add_list(&command, "--pose", pose,
+           "columns of a CSV file with poses in place of velocities, as in x,y,psi or "
+           "z=altitude: velocities and accelerations become integrals over a window that is found");
 }
 
 void add_units(const std::vector<std::string>& assignments,

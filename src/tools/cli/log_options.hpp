@@ -30,6 +30,7 @@ struct LogOptions {
   std::vector<std::string> ignored;
   std::vector<std::string> units;   ///< column=unit
   std::vector<std::string> also{};  ///< log::Roles::also
+  std::vector<std::string> pose{};  ///< log::Roles::pose
 
   void add_to(CLI::App& command);
   /// The options of add_to() that say what the columns of a table are.
@@ -123,6 +124,9 @@ CLI::Option* add_thrust_option(CLI::App& command, std::vector<std::string>& thru
 /// The thrusts of --thrust, N per square of the thruster's unit. Throws InputError (--thrust) on
 /// text without name, and on a number that is not above 0 and at most 1e9.
 std::vector<std::pair<std::string, double>> known_thrusts(const std::vector<std::string>& thrust);
+
+/// The option --pose (log::Roles::pose).
+void add_pose_option(CLI::App& command, std::vector<std::string>& pose);
 
 /// Adds the units of --units to those of a configuration. Throws InputError on text without column.
 void add_units(const std::vector<std::string>& assignments,

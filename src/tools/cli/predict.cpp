@@ -37,6 +37,7 @@ struct PredictArguments {
   std::string time;
   double rate_hz = 0.0;
   std::vector<std::string> units;
+  std::vector<std::string> pose;
   bool jacobian = false;
   std::string current;
 };
@@ -284,6 +285,7 @@ void predict(const PredictArguments& options) {
     roles.rate_hz = options.rate_hz;
   }
   add_units(options.units, roles.units);
+  roles.pose = options.pose;
   if (!std::isfinite(roles.rate_hz) || roles.rate_hz < 0.0) {
     throw InputError(
         "rate", number_text(roles.rate_hz) + " is out of range; it has to be > 0 rows per second");
@@ -326,6 +328,7 @@ void add_predict(CLI::App& app) {
   add_bag_options(*command, options->source, "log", "the log: " + log_formats());
   add_clock_options(*command, options->time, options->rate_hz);
   add_units_option(*command, options->units);
+  add_pose_option(*command, options->pose);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
   add_model(command, "--model", options->model);
   command->add_option("--out", options->out, "CSV file: the log's columns and the predictions")
