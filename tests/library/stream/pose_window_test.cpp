@@ -244,7 +244,7 @@ TEST(PoseWindow, PartsOfAPoseGiveWhatTheyCan) {
 TEST(PoseWindow, CommandsAndStatesAreMeansWithTheSameWeights) {
   const std::vector<Recorded> sources{
       {"z", [](double t) { return t; }},
-      {"n", [](double t) { return t < 10.0 ? 0.0 : 4.0; }, 5.0, 0.0, 0.0, Interpolation::hold},
+      {"n", [](double t) { return t < 9.9 ? 0.0 : 4.0; }, 5.0, 0.0, 0.0, Interpolation::hold},
       {"phi", [](double t) { return wrapped(3.1 + 0.02 * t); }}};
   StreamPlan plan = plan_of(sources, {.position = {"", "", "z"}, .attitude = {"phi", "", ""}});
   plan.inputs = {"w", "n", "phi"};
