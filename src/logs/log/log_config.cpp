@@ -374,6 +374,9 @@ class LogConfigReader {
 
   // {velocity = ["u", "v", "w"], rates = ["p", "q", "r"], arm = [0.3, 0.0, -0.1]}
   void read_lever_arm(const file::TomlNode& value) {
+    if (plan().pose) {
+      value.refuse("moves velocities to another point; with 'pose' give the pose of that point");
+    }
     value.table({"velocity", "rates", "arm"});
     SamplingPlan::LeverArm lever{.velocity = three_names(value["velocity"]),
                                  .rates = three_names(value["rates"])};

@@ -161,6 +161,10 @@ TEST_F(PoseConfig, RefusesWhatIsNoPose) {
                 .find("yaw"),
             std::string::npos);
   EXPECT_NE(refusal(csv, kPlane + "window = -1\n" + kCommands).find("window"), std::string::npos);
+  const std::string lever =
+      "lever_arm = {velocity = [\"u\", \"v\", \"w\"], rates = [\"p\", \"q\", \"r\"], arm = [1, 0, "
+      "0]}\n";
+  EXPECT_NE(refusal(csv, kPlane + lever + kCommands).find("pose of that point"), std::string::npos);
   EXPECT_NE(refusal("t,x,y,psi,n\n0,1,2,3,4\n1,1,2,3,4\n2,1,2,3,4\n",
                     kPlane + "[log.commands]\nn = \"n\"\n")
                 .find("window"),
