@@ -30,7 +30,8 @@ def test_every_check_of_scikit_learn(estimator, check):
 
 def test_cross_validation_and_search_work(log):
     from sklearn.model_selection import GridSearchCV, KFold
-    search = GridSearchCV(kelpie.DynamicsModel(**SMALL), {"epsilon": [0.1, 2.0]}, cv=KFold(3))
+    model = kelpie.DynamicsModel(**SMALL, learner="svr")  # other members have no epsilon
+    search = GridSearchCV(model, {"epsilon": [0.1, 2.0]}, cv=KFold(3))
     search.fit(log.X, log.y)
     assert search.best_params_ == {"epsilon": 0.1}
     assert search.best_score_ > 0.7

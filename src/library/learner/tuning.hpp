@@ -76,10 +76,10 @@ struct OnlineTuning {
     std::size_t error_least = 30;    ///< errors before the usual error is known: by hand
     std::size_t error_every = 16;    ///< errors between two medians: by hand
     double kept = 300.0;             ///< independent samples behind the terms' weights, at a change
-    double caution = 1.0;            ///< κ of a member's disagreement, method/committee.md
+    double caution = 0.5;            ///< κ of a member's disagreement, method/committee.md
     /// Shares before the first errors, relative to each other, in the order of the members: the
     /// simpler a member, the less a few samples mislead it.
-    std::array<double, 6> first_shares{0.5, 0.2, 0.5, 0.2, 2.0, 0.5};
+    std::array<double, 6> first_shares{1.0, 0.4, 1.0, 0.2, 1.5, 0.5};
   } members;
 
   /// ErrorCorrelation.
