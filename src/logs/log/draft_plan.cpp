@@ -568,16 +568,19 @@ class Planner {
         "cmd",   "command", "desired",  "ref",   "target", "setpoint", "rate",
         "speed", "vel",     "velocity", "accel", "true",   "error",    "covariance"};
     std::map<std::string, CandidateColumn> parts;
+    const auto is_plain = [](const std::string& name) {
+      return can_be_written(name) && name.find_first_of("\"\\") == std::string::npos;
+    };
     for (const bag::FieldRange& field : topic.fields) {
       const std::vector<std::string> words = words_of(field.path);
       const bool is_other = std::ranges::any_of(words, [&](const std::string& word) {
         return std::ranges::find(kOther, word) != kOther.end();
       });
-      const std::optional<std::string> part =
-          is_other || field.finite == 0 || !field.elements.empty() || !can_be_written(field.path) ||
-                  field.path.find_first_of("\"\\") != std::string::npos
-              ? std::nullopt
-              : pose_part_by_name(field.path);
+      const std::optional<std::string> part = is_other || field.finite == 0 ||
+                                                      !field.elements.empty() ||
+                                                      !is_plain(field.path) || !is_plain(topic.name)
+                                                  ? std::nullopt
+                                                  : pose_part_by_name(field.path);
       if (part) {
         parts.try_emplace(
             *part, CandidateColumn{

@@ -62,8 +62,7 @@ TEST_F(Plan, SetpointsAreThoseOfThePlan) {
 
 // What is known never shrinks, and the same log has the same plan.
 TEST_F(Plan, TheCountdownFallsAndRepeats) {
-  const json plan = planned("--tell sway_drag --seconds 30", "out");
-  EXPECT_EQ(plan["names"], (json{"sway_linear_drag", "sway_quadratic_drag"}));
+  const json plan = planned("--seconds 60", "out");
   ASSERT_GT(plan["countdown"].size(), 1U);
   for (std::size_t i = 1; i < plan["countdown"].size(); ++i) {
     const json& before = plan["countdown"][i - 1]["numbers"];
@@ -72,7 +71,7 @@ TEST_F(Plan, TheCountdownFallsAndRepeats) {
       EXPECT_LE(after[k].get<double>(), 1.02 * before[k].get<double>());
     }
   }
-  planned("--tell sway_drag --seconds 30", "again");
+  planned("--seconds 60", "again");
   EXPECT_EQ(content("out/plan.csv"), content("again/plan.csv"));
 }
 

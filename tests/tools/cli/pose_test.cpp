@@ -22,7 +22,7 @@ class Poses : public testing::CommandTest {
 
 TEST_F(Poses, AreLearnedWithoutAVelocityInTheLog) {
   const Outcome outcome =
-      testing::succeeded(run("learn log.csv --pose x,y,psi --rate 5 --out out"));
+      testing::succeeded(run("learn log.csv --pose x,y,psi --inputs u,v,r,n,m --rate 5 --out out"));
   EXPECT_NE(outcome.out.find("poses: velocities and accelerations over windows of"),
             std::string::npos)
       << outcome.out;
@@ -33,7 +33,8 @@ TEST_F(Poses, AreLearnedWithoutAVelocityInTheLog) {
     EXPECT_NEAR(axis["intervals"]["held"].get<double>(), 0.9, 0.06) << axis["name"];
   }
   testing::succeeded(run("rollout log.csv --pose x,y,psi --rate 5 --model out/model.json"));
-  testing::succeeded(run("predict log.csv --model out/model.json --pose x,y,psi --rate 5 --out p.csv"));
+  testing::succeeded(
+      run("predict log.csv --model out/model.json --pose x,y,psi --rate 5 --out p.csv"));
 }
 
 TEST_F(Poses, OfAConfigurationAndOfTheOptionGiveTheSameRows) {
@@ -42,14 +43,15 @@ TEST_F(Poses, OfAConfigurationAndOfTheOptionGiveTheSameRows) {
         "\"psi\"}\n[log.commands]\nn = \"n\"\nm = \"m\"\n");
   testing::succeeded(run("convert log.csv --config c.toml --out a.csv"));
   testing::succeeded(run("learn log.csv --config c.toml --out one"));
-  testing::succeeded(run("learn log.csv --pose x,y,psi --rate 5 --out two"));
-  EXPECT_EQ(json("one/result.json")["axes"], json("two/result.json")["axes"]);
+  testing::succeeded(run("learn log.csv --pose x,y,psi --inputs u,v,r,n,m --rate 5 --out two"));
+  EXPECT_EQ(json("one/model.json")["axes"], json("two/model.json")["axes"]);
   EXPECT_NE(content("a.csv").find("udot"), std::string::npos);
 }
 
 TEST_F(Poses, AreRefusedWithWhatWouldBeRight) {
-  testing::expect_refused(run("learn log.csv --pose x,psi --out no"), "x and y belong together");
-  testing::expect_refused(run("learn log.csv --pose x,y --out no"), "yaw");
+  testing::expect_refused(run("learn log.csv --pose x,psi --inputs u,v,r,n,m --out no"),
+                          "x and y belong together");
+  testing::expect_refused(run("learn log.csv --pose x,y --inputs u,v,r,n,m --out no"), "yaw");
   testing::expect_refused(run("learn log.csv --pose x,y,t --out no"), "names no part of a pose");
   testing::expect_refused(run("learn log.csv --pose x,y,heading --out no"), "heading");
 }
