@@ -363,11 +363,11 @@ void Committee::rescale_fits(const SampleMap& map) {
   const SampleCollector& buffer = learner_.champion().buffer();
   const auto factors = std::span<const double>(sample_).subspan(buffer.kernel().inputs());
   seen_.rescale(gain, offset);
-  for (SparseRegression* const fit : {&fits_->physics, &fits_->line, &fits_->mean}) {
+  const auto all = fits_->all();
+  const std::span<SparseRegression* const> fits(all);
+  std::ranges::for_each(fits.first(Fits::kWithKernels), &SparseRegression::clear);
+  for (SparseRegression* const fit : fits.subspan(Fits::kWithKernels)) {
     fit->rescale(factors, gain, offset);
-  }
-  for (SparseRegression* const fit : {&fits_->precise, &fits_->memory}) {
-    fit->clear();
   }
   to_learn_.begin(buffer, 1);
   kernels_only_ = true;
