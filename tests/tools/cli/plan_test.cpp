@@ -60,9 +60,16 @@ TEST_F(Plan, SetpointsAreThoseOfThePlan) {
   EXPECT_NE(content("out/plan.html").find("Countdown"), std::string::npos);
 }
 
+TEST_F(Plan, WhatTheLogTellsNeedsNoManoeuvre) {
+  const json plan = planned("--tell sway_drag --seconds 60", "out");
+  EXPECT_EQ(plan["names"], (json{"sway_linear_drag", "sway_quadratic_drag"}));
+  EXPECT_EQ(plan["countdown"].size(), 1U);
+}
+
 // What is known never shrinks, and the same log has the same plan.
 TEST_F(Plan, TheCountdownFallsAndRepeats) {
-  const json plan = planned("--seconds 60", "out");
+  const json plan = planned("--tell surge_drag --seconds 60", "out");
+  EXPECT_EQ(plan["names"], (json{"surge_linear_drag", "surge_quadratic_drag"}));
   ASSERT_GT(plan["countdown"].size(), 1U);
   for (std::size_t i = 1; i < plan["countdown"].size(); ++i) {
     const json& before = plan["countdown"][i - 1]["numbers"];
@@ -71,7 +78,7 @@ TEST_F(Plan, TheCountdownFallsAndRepeats) {
       EXPECT_LE(after[k].get<double>(), 1.02 * before[k].get<double>());
     }
   }
-  planned("--seconds 60", "again");
+  planned("--tell surge_drag --seconds 60", "again");
   EXPECT_EQ(content("out/plan.csv"), content("again/plan.csv"));
 }
 
