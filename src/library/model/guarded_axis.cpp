@@ -273,11 +273,12 @@ void GuardedAxis::trust_candidate(double t) {
   probation_ = false;
   former_kept_ = t > young_until_;
   guarded_ = !arguments_.scaling;
-  std::swap(first_, refused_);
-  refused_.clear();
   if (former_kept_) {
     first_.clear();  // what comes from now on tells whether the former axis was right
+  } else {
+    std::swap(first_, refused_);
   }
+  refused_.clear();
   run_ = 0;
   recent_ = 0.0;
   share_ = 0.0;
