@@ -70,6 +70,10 @@ class TermSet {
   /// size() values. Allocates nothing.
   void evaluate(std::span<const double> x, std::span<double> out) const;
 
+  /// The power p with φ_k(…, s x_i, …) = s^p φ_k(x) for all s > 0: 0 for a term without input i,
+  /// not finite for a term of another form. Allocates nothing.
+  double power(std::size_t k, std::size_t input) const;
+
   /// gradient += Σ weights[k] ∂φ_k/∂x with respect to the raw inputs, with right-hand slopes at
   /// kinks (Expression::slope). Terms and slopes that are not finite count as 0. Requires a weight
   /// per term and room for x.size() values. Allocates nothing.

@@ -109,6 +109,13 @@ void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
   add_change();
 }
 
+void AdaptiveSvr::follow_scale(const Decision& news) {
+  detector_.dismiss();  // errors until now are of the vehicle before
+  memory_.settle();
+  tally_.changes += news.changed ? 1 : 0;
+  tally_.withdrawn += news.withdrawn ? 1 : 0;
+}
+
 void AdaptiveSvr::add_change() {
   if (change().any()) {
     model_.assign(champion().model());

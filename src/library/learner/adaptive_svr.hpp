@@ -74,6 +74,10 @@ class AdaptiveSvr final : public OnlineRegressor {
   /// Requires `adapt = challenger`. Cost O(n inputs). Allocates nothing.
   void shift(std::span<const double> step, const Decision& news);
 
+  /// The scale of the samples, and nothing else, has followed a change of the vehicle: function,
+  /// buffer and past models hold for the changed vehicle. `news` as in shift(). Allocates nothing.
+  void follow_scale(const Decision& news);
+
   /// KernelDensity::novelty() of a sample's inputs in the champion's buffer. Cost: two kernel rows.
   double novelty(std::span<const double> z) const {
     return kelpie::novelty(champion().buffer(), z);

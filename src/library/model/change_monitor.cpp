@@ -58,6 +58,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       correlation_(states.size()),
       starts_(kMostStarts),
       changed_start_(kMostStarts),
+      gained_(commands.size()),
       row_s_(kBefore),
       begun_s_(kBefore),
       told_(columns() * axes()),
@@ -68,12 +69,22 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       error_(axes()),
       effect_(causes()),
       gain_(causes()),
-      mixed_(causes()) {
+      mixed_(causes()),
+      told_gains_(commands.size(), 1.0),
+      square_(commands.size()) {
+  for (const std::size_t command : commands) {
+    gains_.push_back({.input = command});
+    bool scales = true;
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      scales = scales && std::isfinite(terms.power(k, command));
+    }
+    scales_.push_back(scales);
+  }
   for (std::size_t k = 0; k < term_commands_.size(); ++k) {
     const std::span<const std::size_t> inputs = terms.term(k).columns();
     for (std::size_t c = 0; c < commands.size(); ++c) {
       if (std::ranges::find(inputs, commands[c]) != inputs.end()) {
-        term_commands_[k].push_back(c);
+        term_commands_[k].push_back({c, terms.power(k, commands[c])});
       }
     }
     if (inputs.size() == 1) {
@@ -88,6 +99,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
     start.lone.resize(causes() + 2);
     start.scatter.resize(axes());
     start.tau.resize(axes());
+    start.effect.resize(commands_);
   }
 }
 
@@ -203,6 +215,7 @@ void ChangeMonitor::begin_start(double t) {
     free->covariance[c * (causes() + 1)] = kChange.deviation * kChange.deviation;
   }
   std::ranges::fill(free->lone, kUnknown);
+  std::ranges::fill(free->effect, Effect{});
   for (std::size_t a = 0; a < axes(); ++a) {
     free->scatter[a] = scatter_[a].value();
     free->tau[a] = correlation_[a].rows_per_sample();
@@ -229,12 +242,14 @@ void ChangeMonitor::end_old_starts(double t) {
 void ChangeMonitor::effects(const Start& start, std::size_t axis) {
   const std::span<const double> theta = std::span(start.theta).subspan(axis * columns(), columns());
   std::ranges::fill(effect_, 0.0);
+  std::ranges::fill(square_, 0.0);
   value_ = theta.back();
   for (std::size_t k = 0; k + 1 < columns(); ++k) {
     const double part = theta[k] * phi_[k];
     value_ += part;
-    for (const std::size_t command : term_commands_[k]) {
-      effect_[command] += part;
+    for (const Factor& factor : term_commands_[k]) {
+      effect_[factor.command] += part;
+      square_[factor.command] += factor.power > 1.0 ? part : 0.0;
     }
     if (term_drag_[k] == axis) {
       effect_[commands_ + axis] += part;
@@ -285,6 +300,9 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
     const double error = y[a] - value_ - effect.dot(size);
     const double unchanged = robust_log_density(without, noise);
     observe_lone(start, a, y[a] - value_, noise, unchanged);
+    for (std::size_t c = 0; c < commands_; ++c) {
+      start.effect[c].add(effect_[c] - square_[c], square_[c], 1.0 / noise);
+    }
     start.likelihood += (robust_log_density(error, noise + unknown) - unchanged) / start.tau[a];
     const double gained = log_density(error, noise + unknown) - log_density(without, noise);
     start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
@@ -328,8 +346,55 @@ ChangeMonitor::Event ChangeMonitor::believe(Start& start, double t) {
   moved_s_ = t;
   since_s_ = start.begun_s;
   std::ranges::fill(told_, 0.0);
+  std::ranges::fill(told_gains_, 1.0);
+  gained_ = clear_command(start).value_or(commands_);
   move_to(&start);
   return Event::changed;
+}
+
+// One cause that explains nearly all that all causes together explain: errors of the equation of
+// motion favour many small changes, and a thruster that fails is more usual.
+std::optional<std::size_t> ChangeMonitor::clear_command(const Start& start) const {
+  const auto lone = std::ranges::max_element(start.lone, {}, &Lone::likelihood);
+  const auto command = static_cast<std::size_t>(lone - start.lone.begin());
+  const bool clear = command < commands_ && scales_[command] &&
+                     lone->likelihood >= kChange.lone_share * start.likelihood;
+  return clear ? std::optional(command) : std::nullopt;
+}
+
+void ChangeMonitor::Effect::add(double linear, double square, double weight) {
+  ll += weight * linear * linear;
+  lq += weight * linear * square;
+  qq += weight * square * square;
+}
+
+double ChangeMonitor::Effect::gain(double size) const {
+  double best = 1.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (double g = kChange.least_gain; g <= kChange.most_gain; g += kChange.gain_step) {
+    const double linear = g - 1.0 - size;
+    const double square = g * g - 1.0 - size;
+    const double error = linear * linear * ll + 2.0 * linear * square * lq + square * square * qq;
+    if (error < least) {
+      least = error;
+      best = g;
+    }
+  }
+  return best;
+}
+
+// gains_ leads from the commands' factors in service to those of the start; null: of before the
+// change.
+void ChangeMonitor::move_gains(const Start* start) {
+  if (start != nullptr) {
+    gained_ = clear_command(*start).value_or(gained_);
+  }
+  for (std::size_t c = 0; c < commands_; ++c) {
+    const bool has_failed = start != nullptr && c == gained_;
+    const double gain = has_failed ? start->effect[c].gain(start->lone[c].size) : 1.0;
+    gains_[c].factor = gain / told_gains_[c];
+    told_gains_[c] = gain;
+  }
 }
 
 // The sizes of all hypotheses of a start, weighted by their likelihood.
@@ -352,6 +417,10 @@ void ChangeMonitor::mix_sizes(const Start& start) {
 
 // step_ leads from the coefficients in service to those of the start; null: of before the change.
 void ChangeMonitor::move_to(const Start* start) {
+  if (by_gain()) {
+    move_gains(start);
+    return;
+  }
   if (start != nullptr) {
     mix_sizes(*start);
   }
@@ -361,8 +430,8 @@ void ChangeMonitor::move_to(const Start* start) {
       if (start != nullptr) {
         share = mixed_[commands_ + axes() + a];
         if (k + 1 < columns()) {
-          for (const std::size_t command : term_commands_[k]) {
-            share += mixed_[command];
+          for (const Factor& factor : term_commands_[k]) {
+            share += mixed_[factor.command];
           }
           share += term_drag_[k] == a ? mixed_[commands_ + a] : 0.0;
         }
@@ -400,8 +469,20 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
 
 // The changed vehicle becomes the vehicle without a change.
 ChangeMonitor::Event ChangeMonitor::settle() {
-  std::ranges::transform(starts_[changed_start_].theta, told_, step_.begin(), std::plus<>{});
-  fit_.set_theta(step_);
+  const Start& start = starts_[changed_start_];
+  if (by_gain()) {
+    fit_.set_theta(start.theta);
+    as_vector(phi_).setOnes();
+    for (std::size_t k = 0; k + 1 < columns(); ++k) {
+      for (const Factor& factor : term_commands_[k]) {
+        phi_[k] *= std::pow(told_gains_[factor.command], -factor.power);
+      }
+    }
+    fit_.rescale(phi_, 1.0);
+  } else {
+    std::ranges::transform(start.theta, told_, step_.begin(), std::plus<>{});
+    fit_.set_theta(step_);
+  }
   if (samples_ > kKept) {
     fit_.limit_rows(std::llround(static_cast<double>(fit_.rows()) * kKept / samples_));
     samples_ = kKept;
@@ -430,6 +511,11 @@ void ChangeMonitor::Start::visit(Archive& archive) {
   for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
     archive.numbers(*values);
   }
+  for (Effect& one : effect) {
+    for (double* const number : {&one.ll, &one.lq, &one.qq}) {
+      archive.number(*number);
+    }
+  }
   for (Lone& one : lone) {
     for (double* const number : {&one.size, &one.variance, &one.likelihood}) {
       archive.number(*number);
@@ -455,6 +541,8 @@ void ChangeMonitor::visit(Archive& archive) {
   archive.whole(rows_);
   archive.whole(begun_);
   archive.numbers(told_);
+  archive.numbers(told_gains_);
+  archive.whole(gained_, 0, commands_);
 }
 
 }  // namespace kelpie

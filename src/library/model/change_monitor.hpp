@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "learner/error_correlation.hpp"
 #include "learner/robust_scale.hpp"
 #include "learner/triangular_fit.hpp"
+#include "model/command_gain.hpp"
 
 namespace kelpie {
 
@@ -68,6 +70,13 @@ class ChangeMonitor {
     return std::span(step_).subspan(axis * columns(), columns());
   }
 
+  /// Whether the last change is of one command's effect: gains() tell the last event, and not
+  /// step().
+  bool by_gain() const { return gained_ < commands_; }
+
+  /// Change of every command's effect by the last event.
+  std::span<const CommandGain> gains() const { return gains_; }
+
   /// Another mechanism has found another vehicle: the monitor knows nothing of that vehicle.
   void restart();
 
@@ -84,6 +93,17 @@ class ChangeMonitor {
   };
   static const Lone kUnknown;
 
+  /// The effect of a command on the rows of a start, as sums over rows and axes: of its terms in
+  /// the first power of the command L, and in the second (and higher) Q.
+  struct Effect {
+    double ll = 0.0;
+    double lq = 0.0;
+    double qq = 0.0;
+    /// The factor g of the command with (g - 1) L + (g² - 1) Q ≈ size (L + Q).
+    double gain(double size) const;
+    void add(double linear, double square, double weight);
+  };
+
   /// The hypothesis of a change at one moment.
   struct Start {
     bool alive = false;
@@ -99,6 +119,7 @@ class ChangeMonitor {
     std::vector<Lone> lone;          ///< each cause, then drag of all axes, then inertia of all
     std::vector<double> scatter;     ///< usual error of each axis
     std::vector<double> tau;         ///< rows per independent sample of each axis
+    std::vector<Effect> effect;      ///< of each command
     void visit(Archive& archive);
   };
 
@@ -117,6 +138,8 @@ class ChangeMonitor {
   void observe(Start& start, std::span<const double> y, bool against_fit);
   void observe_lone(Start& start, std::size_t axis, double error, double noise, double unchanged);
   void mix_sizes(const Start& start);
+  std::optional<std::size_t> clear_command(const Start& start) const;
+  void move_gains(const Start* start);
   const Start* most_evident() const;
   Start& youngest_with(double evidence);
   Event believe(Start& start, double t);
@@ -126,13 +149,19 @@ class ChangeMonitor {
 
   TermSet terms_;
   std::size_t commands_;
-  std::vector<std::vector<std::size_t>> term_commands_;  ///< commands in each term
-  std::vector<std::size_t> term_drag_;                   ///< axis that each term damps, or none
+  /// A command in a term, with its power.
+  struct Factor {
+    std::size_t command = 0;
+    double power = 1.0;
+  };
+  std::vector<std::vector<Factor>> term_commands_;  ///< commands in each term
+  std::vector<std::size_t> term_drag_;              ///< axis that each term damps, or none
   TriangularFit fit_;
   std::vector<RobustScale> scatter_;
   std::vector<ErrorCorrelation> correlation_;
   std::vector<Start> starts_;
   std::size_t changed_start_;  ///< number of the start believed; kMostStarts: none
+  std::size_t gained_;         ///< command of which the effect has changed; commands_: not so
   double believed_s_ = 0.0;    ///< [s]
   double moved_s_ = 0.0;       ///< last step [s]
   double since_s_ = 0.0;       ///< [s]
@@ -144,9 +173,13 @@ class ChangeMonitor {
   double usual_ = 0.0;               ///< largest evidence of former starts [nats], fading
   std::vector<double> told_, step_;  ///< change of the coefficients in service; last step
   std::vector<double> all_phi_, phi_, weighted_y_, error_;  ///< of the row
-  double leverage_ = 0.0;                                   ///< φᵀPφ of the row
-  std::vector<double> effect_, gain_, mixed_;               ///< scratch: per cause
-  double value_ = 0.0;                                      ///< scratch: Θ₀ᵀφ
+  std::vector<bool> scales_;        ///< per command: every term is a power of the command
+  std::vector<CommandGain> gains_;  ///< last event
+  double leverage_ = 0.0;           ///< φᵀPφ of the row
+  std::vector<double> effect_, gain_, mixed_;  ///< scratch: per cause
+  std::vector<double> told_gains_;             ///< in service, since before the change
+  std::vector<double> square_;  ///< scratch: per command, the effect in higher powers
+  double value_ = 0.0;          ///< scratch: Θ₀ᵀφ
 };
 
 }  // namespace kelpie

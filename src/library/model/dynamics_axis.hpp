@@ -11,6 +11,7 @@
 #include "learner/committee.hpp"
 #include "learner/conformal.hpp"
 #include "learner/disturbance.hpp"
+#include "model/command_gain.hpp"
 #include "model/scaled.hpp"
 #include "model/snapshot.hpp"
 
@@ -62,6 +63,9 @@ class DynamicsAxis final : public Scaled {
   /// Committee::shift() by a step of the coefficients of the first terms, the last number of the
   /// term 1 [target unit per unit of the term].
   void shift(std::span<const double> step, const Decision& news);
+
+  /// Commands have other effects: all that was learned holds for the commands times these factors.
+  void amplify(std::span<const CommandGain> gains, const Decision& news);
 
   std::vector<Coefficient> coefficients() const override;
   std::vector<MemberShare> members() const override { return learner_.members(); }

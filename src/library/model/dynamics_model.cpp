@@ -24,7 +24,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "16";  // of the archive of all classes together
+constexpr const char* kStateVersion = "17";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -166,11 +166,18 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
     return;
   }
   const ChangeMonitor::Event event = change->update(x, y, t);
+  if (event != ChangeMonitor::Event::none && change->by_gain() && steady) {
+    steady->amplify(change->gains());
+  }
   for (std::size_t i = 0; event != ChangeMonitor::Event::none && i < axes.size(); ++i) {
     decisions[i].changed = event == ChangeMonitor::Event::changed;
     decisions[i].withdrawn = event == ChangeMonitor::Event::withdrawn;
     decisions[i].changed_since = decisions[i].changed ? change->since() : 0.0;
-    axes[i].shift(change->step(i), decisions[i]);
+    if (change->by_gain()) {
+      axes[i].amplify(change->gains(), decisions[i]);
+    } else {
+      axes[i].shift(change->step(i), decisions[i]);
+    }
   }
 }
 

@@ -70,6 +70,11 @@ class GuardedAxis final : public OnlineRegressor {
   /// DynamicsAxis::shift() of the trusted axis.
   void shift(std::span<const double> step, const Decision& news) { trusted().shift(step, news); }
 
+  /// DynamicsAxis::amplify() of the trusted axis.
+  void amplify(std::span<const CommandGain> gains, const Decision& news) {
+    trusted().amplify(gains, news);
+  }
+
   /// DynamicsAxis::set_past_models().
   void set_past_models(std::vector<StoredPastModel> models) {
     given_ = models;

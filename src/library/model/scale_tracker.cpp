@@ -159,6 +159,25 @@ bool ScaleTracker::outgrown(const AxisScaling& scaling) const {
   return std::max(scaling.input.growth(input_moments_), target) > track_;
 }
 
+void ScaleTracker::amplify(std::size_t input, double factor) {
+  if (factor == 1.0) {
+    return;
+  }
+  const auto apply = [&](AxisScaling& scaling) {
+    scaling.input.mean[input] /= factor;
+    for (std::size_t row = 0; row < inputs_; ++row) {
+      scaling.input.whitening(row, input) *= factor;
+    }
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      scaling.term_scale[k] /= std::pow(factor, terms_.power(k, input));
+    }
+  };
+  apply(*scaling_);  // NOLINT(bugprone-unchecked-optional-access): required
+  if (on_the_way()) {
+    apply(next_);
+  }
+}
+
 SampleMap ScaleTracker::map() const {
   return [this](std::span<double> x, double& y) {
     const AxisScaling& in_use = *scaling_;  // NOLINT(bugprone-unchecked-optional-access): required

@@ -67,6 +67,11 @@ class ScaleTracker {
   /// except with ScalingKind::full.
   const AxisScaling* next();
 
+  /// The vehicle moves as if an input were `factor` times what it is: the scale maps x_i as it
+  /// mapped factor · x_i before. Statistics are of the log, and stay. Requires scaling(), factor >
+  /// 0 and terms that are powers of this input.
+  void amplify(std::size_t input, double factor);
+
   void set_out() { move_ = Move::coming; }  ///< Starts a change to the scale of next().
   void adopt();  ///< Puts the scale of next() in use. The first call allocates.
   void arrive() { move_ = Move::none; }  ///< Ends the change of scale.

@@ -56,6 +56,9 @@ class Scaled : public OnlineRegressor {
   Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms,
          std::optional<AxisScaling> scaling);
 
+  /// ScaleTracker::amplify(). The caller tells the learner.
+  void amplify(std::size_t input, double factor) { scale_.amplify(input, factor); }
+
   /// ScaleTracker::resume_from(); no samples are held back.
   void resume_from(const AxisScaling& scaling) { scale_.resume_from(scaling); }
 

@@ -312,6 +312,17 @@ void SteadyPart::restart() {
   }
 }
 
+void SteadyPart::amplify(std::span<const CommandGain> gains) {
+  std::ranges::fill(scratch_, 1.0);
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    for (const CommandGain& gain : gains) {
+      const double power = gain.factor != 1.0 ? terms_.power(k, gain.input) : 0.0;
+      scratch_[k] *= std::isfinite(power) ? std::pow(gain.factor, -power) : 1.0;
+    }
+  }
+  fit_.rescale(scratch_, 1.0);
+}
+
 // As a number of rows: the variance of a row's error over that of what a product makes up in the
 // row. Errors that last are as many fewer.
 void SteadyPart::hold_products(TriangularFit& fit, std::size_t axis) const {

@@ -9,6 +9,7 @@
 #include "kelpie/model/open_loop.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "learner/triangular_fit.hpp"
+#include "model/command_gain.hpp"
 #include "model/open_loop_practice.hpp"
 
 namespace kelpie {
@@ -67,6 +68,10 @@ class SteadyPart {
   /// After a change of the vehicle: earlier steps count as 25 s from now on, and serve until new
   /// steps outweigh them. Without a model yet, discards everything.
   void restart();
+
+  /// Commands have other effects: the fit holds for the commands times these factors. Without
+  /// effect where a term is no power of the command.
+  void amplify(std::span<const CommandGain> gains);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -144,6 +144,10 @@ inline constexpr struct ModelTuning {
     double usual_memory_s = 1800.0;  ///< s, of this evidence; by hand
     double samples_per_term = 5.0;   ///< independent samples of a vehicle that is known; by hand
     double alike = 0.8;              ///< share of the largest evidence that tells as much; by hand
+    double lone_share = 0.9;         ///< of the likelihood of all causes, of one that is enough
+    double least_gain = 0.05;        ///< of a command; 0 would leave no way back
+    double most_gain = 3.0;          ///< of a command; by hand
+    double gain_step = 0.01;         ///< between two gains tried; by hand
     double settle_s = 60.0;          ///< s in which coefficients follow a change; by hand
     double move_every_s = 1.0;       ///< s between two steps; by hand
     double probation_s = 120.0;      ///< s in which a change may be withdrawn; by hand

@@ -107,6 +107,36 @@ TermSet TermSet::parsed(const std::vector<std::string>& texts,
   return set;
 }
 
+double TermSet::power(std::size_t k, std::size_t input) const {
+  const Expression& term = terms_[k];
+  if (std::ranges::find(term.columns(), input) == term.columns().end()) {
+    return 0.0;
+  }
+  ShortVector<kMostInputs> values(std::max(input, term.columns().back()) + 1);
+  const std::span<double> x(values.data(), values.size());
+  double power = std::numeric_limits<double>::quiet_NaN();
+  for (const double sign : {1.0, -1.0}) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] = 1.0 + 0.37 * static_cast<double>(i);
+    }
+    const double one = sign * x[input];
+    const auto at = [&](double scale) {
+      x[input] = scale * one;
+      return term(x);
+    };
+    const double twice = std::log2(at(2.0) / at(1.0));
+    const double threefold = std::log(at(3.0) / at(1.0)) / std::log(3.0);
+    if (at(1.0) == 0.0 && at(2.0) == 0.0) {
+      continue;  // a term of one direction of the command
+    }
+    if (!(std::abs(twice - threefold) < 1e-9) || std::abs(twice - power) > 1e-9) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    power = twice;
+  }
+  return power;
+}
+
 void TermSet::evaluate(std::span<const double> x, std::span<double> out) const {
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     const double value = terms_[k](x);

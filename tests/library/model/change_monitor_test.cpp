@@ -46,10 +46,11 @@ void add_noise(PlanarDrive& drive, double step_s, std::uint64_t seed) {
   }
 }
 
-PlanarDrive damaged(double step_s, double before_s, double after_s, double strength) {
+PlanarDrive damaged(double step_s, double before_s, double after_s, double strength,
+                    double other = 1.0) {
   PlanarDrive drive;
   drive.drive(1, static_cast<std::size_t>(before_s / step_s), step_s);
-  drive.drive(2, static_cast<std::size_t>(after_s / step_s), step_s, strength);
+  drive.drive(2, static_cast<std::size_t>(after_s / step_s), step_s, strength, other);
   add_noise(drive, step_s, 3);
   return drive;
 }
@@ -57,6 +58,7 @@ PlanarDrive damaged(double step_s, double before_s, double after_s, double stren
 struct Story {
   std::vector<double> changed, withdrawn, since;  // [s]
   std::array<std::vector<double>, 2> moved;       // sum of the steps of each axis
+  std::array<double, 2> factor{1.0, 1.0};         // product of the gains of each command
 };
 
 Story watch(ChangeMonitor& monitor, const PlanarDrive& drive) {
@@ -73,7 +75,11 @@ Story watch(ChangeMonitor& monitor, const PlanarDrive& drive) {
     if (event == Event::withdrawn) {
       story.withdrawn.push_back(drive.t[i]);
     }
-    for (std::size_t axis = 0; axis < 2; ++axis) {
+    for (std::size_t c = 0; monitor.by_gain() && c < 2; ++c) {
+      EXPECT_EQ(monitor.gains()[c].input, kCommands[c]);
+      story.factor[c] *= monitor.gains()[c].factor;
+    }
+    for (std::size_t axis = 0; !monitor.by_gain() && axis < 2; ++axis) {
       const std::span<const double> step = monitor.step(axis);
       story.moved[axis].resize(step.size());
       std::ranges::transform(step, story.moved[axis], story.moved[axis].begin(), std::plus<>{});
@@ -95,20 +101,33 @@ TEST(ChangeMonitor, BelievesInAHalvedThrusterAtAnyRate) {
   }
 }
 
-// A thruster at half its effect takes away 0.005 n1|n1| in surge and 0.01 n1|n1| in yaw.
-TEST(ChangeMonitor, TellsByHowMuchTheCoefficientsHaveChanged) {
+// Half of the thrust n1|n1| is the thrust of n1 √½.
+TEST(ChangeMonitor, TellsTheFactorOfACommandThatHasLostHalfOfItsEffect) {
   ChangeMonitor monitor = make_monitor();
   const Story story = watch(monitor, damaged(0.2, 1200.0, 100.0, 0.5));
+  EXPECT_TRUE(monitor.by_gain());
+  EXPECT_NEAR(story.factor[0], std::sqrt(0.5), 0.02);
+  EXPECT_DOUBLE_EQ(story.factor[1], 1.0);
+}
+
+// Two thrusters at once: half takes away 0.005 n1|n1| in surge and 0.01 n1|n1| in yaw, 1.6 times
+// adds 0.006 n2|n2| and takes away 0.012 n2|n2|.
+TEST(ChangeMonitor, TellsByHowMuchTheCoefficientsHaveChanged) {
+  ChangeMonitor monitor = make_monitor();
+  const Story story = watch(monitor, damaged(0.2, 1200.0, 100.0, 0.5, 1.6));
+  ASSERT_EQ(story.changed.size(), 1U);
+  EXPECT_FALSE(monitor.by_gain());
   const TermSet set = terms();
   ASSERT_EQ(story.moved[0].size(), set.size() + 1);
   std::vector<double> phi(set.size());
-  for (const double n1 : {-6.0, 6.0}) {
-    set.evaluate(std::array{0.0, 0.0, n1, 0.0}, phi);
+  for (const std::array n : {std::array{-6.0, 0.0}, std::array{6.0, 0.0}, std::array{0.0, 6.0}}) {
+    set.evaluate(std::array{0.0, 0.0, n[0], n[1]}, phi);
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double lost =
+      const double more =
           std::inner_product(phi.begin(), phi.end(), story.moved[axis].begin(), 0.0);
-      const double truth = (axis == 0 ? -0.005 : -0.01) * n1 * std::abs(n1);
-      EXPECT_NEAR(lost, truth, 0.05 * std::abs(truth)) << n1 << " " << axis;
+      const double truth = (axis == 0 ? -0.005 : -0.01) * n[0] * std::abs(n[0]) +
+                           (axis == 0 ? 0.006 : -0.012) * n[1] * std::abs(n[1]);
+      EXPECT_NEAR(more, truth, 0.1 * std::abs(truth)) << n[0] << " " << n[1] << " " << axis;
     }
   }
 }

@@ -46,10 +46,10 @@ DynamicsModel learn(const PlanarDrive& drive, const ModelSettings& with) {
   return model;
 }
 
-// R² of an axis on a drive of the damaged vehicle with other commands.
-double r_squared(const DynamicsModel& model, std::size_t axis) {
+// R² of an axis on a drive with other commands, of the damaged vehicle if not told otherwise.
+double r_squared(const DynamicsModel& model, std::size_t axis, double strength = 0.5) {
   PlanarDrive other;
-  other.drive(9, 2'000, kStep, 0.5);
+  other.drive(9, 2'000, kStep, strength);
   double mean = 0.0;
   for (const auto& y : other.y) {
     mean += y[axis] / static_cast<double>(other.y.size());
@@ -74,6 +74,17 @@ TEST(ModelChange, KnowsTheDamagedVehicleAfterAHundredRows) {
     EXPECT_GT(r_squared(adaptive, axis), r_squared(rigid, axis) + 0.1) << axis;
     EXPECT_EQ(adaptive.axis(axis).status().tally.changes, 1) << axis;
     EXPECT_EQ(rigid.axis(axis).status().tally.changes, 0) << axis;
+  }
+}
+
+// What was learned of the whole vehicle holds for the commands times their factors, there and back.
+TEST(ModelChange, NothingLearnedIsLostWhereAThrusterFailsAndIsRepaired) {
+  const DynamicsModel failed = learn(drive_and_lose_half_a_thruster(300), settings());
+  const DynamicsModel repaired = learn(drive_and_lose_half_a_thruster(1'000, 400), settings());
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    EXPECT_GT(r_squared(failed, axis), 0.97) << axis;
+    EXPECT_GT(r_squared(repaired, axis, 1.0), 0.97) << axis;
+    EXPECT_EQ(repaired.axis(axis).status().tally.changes, 2) << axis;
   }
 }
 

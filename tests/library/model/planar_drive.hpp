@@ -21,15 +21,17 @@ struct PlanarDrive {
   std::vector<std::array<double, 2>> y;
   std::vector<double> t;
 
-  /// Accelerations; `strength` scales the first thruster.
-  static std::array<double, 2> accelerations(std::span<const double> x, double strength = 1.0) {
+  /// Accelerations; `strength` scales the first thruster, `other` the second.
+  static std::array<double, 2> accelerations(std::span<const double> x, double strength = 1.0,
+                                             double other = 1.0) {
     const double n1 = strength * x[2] * std::abs(x[2]);
-    const double n2 = x[3] * std::abs(x[3]);
+    const double n2 = other * x[3] * std::abs(x[3]);
     return {-0.2 * x[0] - 0.6 * x[0] * std::abs(x[0]) + 0.01 * (n1 + n2) + 0.1 * x[1] * x[1],
             -0.3 * x[1] - 0.5 * x[1] * std::abs(x[1]) + 0.02 * (n1 - n2)};
   }
 
-  void drive(std::uint64_t seed, std::size_t samples, double step_s, double strength = 1.0) {
+  void drive(std::uint64_t seed, std::size_t samples, double step_s, double strength = 1.0,
+             double other = 1.0) {
     constexpr int kFine = 50;
     RandomStream random(seed, "planar");
     const std::array<double, 4> rate{random.uniform(0.05, 0.2), random.uniform(0.05, 0.2),
@@ -41,12 +43,12 @@ struct PlanarDrive {
         time += step_s / kFine;
         now[2] = 5.0 * std::sin(rate[0] * time) + 3.0 * std::sin(rate[2] * time);
         now[3] = 5.0 * std::cos(rate[1] * time) + 3.0 * std::sin(rate[3] * time);
-        const std::array<double, 2> a = accelerations(now, strength);
+        const std::array<double, 2> a = accelerations(now, strength, other);
         now[0] += a[0] * step_s / kFine;
         now[1] += a[1] * step_s / kFine;
       }
       x.push_back(now);
-      y.push_back(accelerations(now, strength));
+      y.push_back(accelerations(now, strength, other));
       t.push_back(time);
     }
   }

@@ -159,6 +159,29 @@ TEST_F(ScaleTrackerTest, MapsASampleFromOneScaleToAnother) {
   EXPECT_NEAR(y, next.target.apply(5.2), 1e-12);
 }
 
+// Also of the scale that is on the way, so that samples are mapped as before.
+TEST_F(ScaleTrackerTest, AnAmplifiedInputIsScaledAsTheInputTimesTheFactor) {
+  ScaleTracker scale = tracker();
+  observe(scale, 200, 1.0);
+  adopt_next(scale);
+  observe(scale, 3 * 640 - 200, 10.0);
+  ASSERT_NE(scale.next(), nullptr);
+  scale.set_out();
+  const AxisScaling before = *scale.scaling();
+  const ScaledSample of_twice = scale_sample(before, scale.terms(), std::array{0.6, -40.0});
+  ScaledSample mapped = of_twice;
+  double y = 0.1;
+  scale.map()(mapped, y);
+  scale.amplify(0, 2.0);
+  const ScaledSample now = scale_sample(*scale.scaling(), scale.terms(), std::array{0.3, -40.0});
+  ScaledSample mapped_now = now;
+  scale.map()(mapped_now, y);
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    EXPECT_NEAR(now[k], of_twice[k], 1e-12);
+    EXPECT_NEAR(mapped_now[k], mapped[k], 1e-12);
+  }
+}
+
 // Until it has arrived: what was measured on the way is looked at then.
 TEST_F(ScaleTrackerTest, OnTheWayToAScaleItLooksForNoOther) {
   ScaleTracker scale = tracker();

@@ -81,6 +81,19 @@ TEST(TermSet, RefusesWhatMakesNoSense) {
 }
 
 // A thruster that has only run ahead gives its astern term no values to be scaled by.
+TEST(TermSet, PowersOfAnInput) {
+  const std::vector<std::string> inputs{"u", "n"};
+  const TermSet set =
+      TermSet::from("u; n*|n|; u*|u|*n; min(n,0)^2; sin(n); n + u; n^0.5", inputs, 1);
+  const std::vector<double> powers{0.0, 2.0, 1.0, 2.0};
+  for (std::size_t k = 0; k < powers.size(); ++k) {
+    EXPECT_NEAR(set.power(k, 1), powers[k], 1e-12) << set.text(k);
+  }
+  for (std::size_t k = powers.size(); k < set.size(); ++k) {
+    EXPECT_FALSE(std::isfinite(set.power(k, 1))) << set.text(k);
+  }
+}
+
 TEST(TermSet, ATermNotSeenYetHasASensibleScale) {
   const TermSet set = TermSet::from("u;max(th1,0)^2;-min(th1,0)^2;0*u", kPlanar, 3);
   RandomStream random(1, "terms");
