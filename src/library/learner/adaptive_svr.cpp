@@ -96,7 +96,9 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 
 void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
   detector_.dismiss();  // errors until now are of the vehicle before
-  if (news.changed) {
+  if (step.empty()) {
+    memory_.settle();
+  } else if (news.changed) {
     memory_.promote_challenger(news.changed_since);
   } else if (news.withdrawn) {
     memory_.withdraw();
@@ -105,15 +107,10 @@ void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
   }
   tally_.changes += news.changed ? 1 : 0;
   tally_.withdrawn += news.withdrawn ? 1 : 0;
-  change_[champion_].add(step);
-  add_change();
-}
-
-void AdaptiveSvr::follow_scale(const Decision& news) {
-  detector_.dismiss();  // errors until now are of the vehicle before
-  memory_.settle();
-  tally_.changes += news.changed ? 1 : 0;
-  tally_.withdrawn += news.withdrawn ? 1 : 0;
+  if (!step.empty()) {
+    change_[champion_].add(step);
+    add_change();
+  }
 }
 
 void AdaptiveSvr::add_change() {

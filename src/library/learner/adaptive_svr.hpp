@@ -70,13 +70,10 @@ class AdaptiveSvr final : public OnlineRegressor {
   Status status() const override;
 
   /// Follows a change of the vehicle by a known step of the terms' weights; the last number is of
-  /// the bias. `news`: `changed` with `changed_since` at the first step, `withdrawn` at the last.
-  /// Requires `adapt = challenger`. Cost O(n inputs). Allocates nothing.
+  /// the bias. An empty step: the scale of the samples has followed the change, so function, buffer
+  /// and past models hold as they are. `news`: `changed` with `changed_since` at the first step,
+  /// `withdrawn` at the last. Requires `adapt = challenger`. Cost O(n inputs). Allocates nothing.
   void shift(std::span<const double> step, const Decision& news);
-
-  /// The scale of the samples, and nothing else, has followed a change of the vehicle: function,
-  /// buffer and past models hold for the changed vehicle. `news` as in shift(). Allocates nothing.
-  void follow_scale(const Decision& news);
 
   /// KernelDensity::novelty() of a sample's inputs in the champion's buffer. Cost: two kernel rows.
   double novelty(std::span<const double> z) const {

@@ -378,29 +378,16 @@ void Committee::shift(std::span<const double> step, const Decision& news) {
   if (alone()) {
     return;
   }
-  for (SparseRegression* const fit : fits_->all()) {
-    if (fit != &fits_->mean) {
+  for (SparseRegression* const fit :
+       {&fits_->precise, &fits_->memory, &fits_->physics, &fits_->line}) {
+    if (!step.empty()) {
       fit->shift(step);
     }
-  }
-  learner_.shift(step, news);
-  doubt_members(news);
-}
-
-void Committee::follow_scale(const Decision& news) {
-  if (alone()) {
-    return;
-  }
-  learner_.follow_scale(news);
-  doubt_members(news);
-}
-
-void Committee::doubt_members(const Decision& news) {
-  for (SparseRegression* const fit : fits_->all()) {
-    if (news.changed && fit != &fits_->mean) {
+    if (news.changed) {
       fit->doubt_terms(kOnline.members.kept);
     }
   }
+  learner_.shift(step, news);
   if (news.changed || news.withdrawn) {
     shares_.halve_evidence();
   }

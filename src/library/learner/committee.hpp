@@ -100,9 +100,6 @@ class Committee final : public OnlineRegressor {
   /// from a new change on (`news`, as AdaptiveSvr::shift()). Allocates nothing.
   void shift(std::span<const double> step, const Decision& news);
 
-  /// AdaptiveSvr::follow_scale(); the members' weights hold, with an uncertainty as in shift().
-  void follow_scale(const Decision& news);
-
   const AdaptiveSvr& learner() const { return learner_; }
   AdaptiveSvr& learner() { return learner_; }  ///< To add past models.
 
@@ -148,7 +145,6 @@ class Committee final : public OnlineRegressor {
   void score(std::span<const double> z, double y);
   void learn_in(std::span<SparseRegression* const> fits, std::span<const double> z, double y,
                 bool successive);
-  void doubt_members(const Decision& news);
   void freeze_copies();
   void reset();
   void reset_for_new_vehicle();

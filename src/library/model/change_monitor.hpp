@@ -70,12 +70,13 @@ class ChangeMonitor {
     return std::span(step_).subspan(axis * columns(), columns());
   }
 
-  /// Whether the last change is of one command's effect: gains() tell the last event, and not
-  /// step().
+  /// Whether the last change is of one command's effect.
   bool by_gain() const { return gained_ < commands_; }
 
-  /// Change of every command's effect by the last event.
-  std::span<const CommandGain> gains() const { return gains_; }
+  /// Change of every command's effect by the last event; empty where step() tells the change.
+  std::span<const CommandGain> gains() const {
+    return by_gain() ? std::span(gains_) : std::span<const CommandGain>{};
+  }
 
   /// Another mechanism has found another vehicle: the monitor knows nothing of that vehicle.
   void restart();

@@ -111,18 +111,16 @@ Snapshot DynamicsAxis::trained(std::string name) const {
           .known = known_places(svr().champion().buffer())};
 }
 
-void DynamicsAxis::amplify(std::span<const CommandGain> gains, const Decision& news) {
+void DynamicsAxis::follow(std::span<const CommandGain> gains, std::span<const double> step,
+                          const Decision& news) {
   if (scaling() == nullptr) {
     return;
   }
-  for (const CommandGain& gain : gains) {
-    Scaled::amplify(gain.input, gain.factor);
-  }
-  learner_.follow_scale(news);
-}
-
-void DynamicsAxis::shift(std::span<const double> step, const Decision& news) {
-  if (scaling() == nullptr) {
+  if (!gains.empty()) {
+    for (const CommandGain& gain : gains) {
+      amplify(gain.input, gain.factor);
+    }
+    learner_.shift({}, news);
     return;
   }
   ShortVector<kMostTerms + 1> scaled(terms().size() + 1);

@@ -60,12 +60,11 @@ class DynamicsAxis final : public Scaled {
   /// A copy for a TrainedModel, without a disturbance. Requires a model in service. Allocates.
   Snapshot trained(std::string name) const;
 
-  /// Committee::shift() by a step of the coefficients of the first terms, the last number of the
-  /// term 1 [target unit per unit of the term].
-  void shift(std::span<const double> step, const Decision& news);
-
-  /// Commands have other effects: all that was learned holds for the commands times these factors.
-  void amplify(std::span<const CommandGain> gains, const Decision& news);
+  /// The vehicle has changed. `gains`: all that was learned holds for the commands times these
+  /// factors; if empty, Committee::shift() by a step of the coefficients of the first terms, the
+  /// last number of the term 1 [target unit per unit of the term].
+  void follow(std::span<const CommandGain> gains, std::span<const double> step,
+              const Decision& news);
 
   std::vector<Coefficient> coefficients() const override;
   std::vector<MemberShare> members() const override { return learner_.members(); }

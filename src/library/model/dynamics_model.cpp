@@ -166,18 +166,14 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
     return;
   }
   const ChangeMonitor::Event event = change->update(x, y, t);
-  if (event != ChangeMonitor::Event::none && change->by_gain() && steady) {
+  if (event != ChangeMonitor::Event::none && steady) {
     steady->amplify(change->gains());
   }
   for (std::size_t i = 0; event != ChangeMonitor::Event::none && i < axes.size(); ++i) {
     decisions[i].changed = event == ChangeMonitor::Event::changed;
     decisions[i].withdrawn = event == ChangeMonitor::Event::withdrawn;
     decisions[i].changed_since = decisions[i].changed ? change->since() : 0.0;
-    if (change->by_gain()) {
-      axes[i].amplify(change->gains(), decisions[i]);
-    } else {
-      axes[i].shift(change->step(i), decisions[i]);
-    }
+    axes[i].follow(change->gains(), change->step(i), decisions[i]);
   }
 }
 

@@ -67,12 +67,10 @@ class GuardedAxis final : public OnlineRegressor {
   /// Of the trusted axis.
   std::vector<StoredPastModel> past_models() const { return trusted().past_models(); }
 
-  /// DynamicsAxis::shift() of the trusted axis.
-  void shift(std::span<const double> step, const Decision& news) { trusted().shift(step, news); }
-
-  /// DynamicsAxis::amplify() of the trusted axis.
-  void amplify(std::span<const CommandGain> gains, const Decision& news) {
-    trusted().amplify(gains, news);
+  /// DynamicsAxis::follow() of the trusted axis.
+  void follow(std::span<const CommandGain> gains, std::span<const double> step,
+              const Decision& news) {
+    trusted().follow(gains, step, news);
   }
 
   /// DynamicsAxis::set_past_models().
