@@ -196,7 +196,7 @@ class Room:
         before = self.live.text.count("saved, after")
         commander = self.peer()
         commander.order(f"publish /kelpie/command {TEXT} reliable")
-        for _ in range(60):
+        for _ in range(300):  # rows come first, faster than sanitizers learn
             commander.order("text save")
             if self.live.says("saved, after", before + 1, 0.6):
                 return int(re.findall(r"saved, after (\d+)", self.live.text)[-1])

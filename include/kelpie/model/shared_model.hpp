@@ -13,6 +13,8 @@
 
 namespace kelpie {
 
+class TermSet;
+
 /// A DynamicsModel that one thread teaches while any other threads predict, such as a controller at
 /// 50 Hz beside a learner at 10 Hz.
 ///
@@ -78,6 +80,7 @@ class SharedModel {
   void publish();
 
   DynamicsModel model_;
+  std::unique_ptr<const TermSet> terms_;  ///< of all axes; those of model_ go with replaced axes
   std::int64_t published_ = 0;
   std::int64_t passed_over_ = 0;
   std::size_t count_;

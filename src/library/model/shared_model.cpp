@@ -36,6 +36,7 @@ struct SharedModel::Service {
 
 SharedModel::SharedModel(DynamicsModel model, std::size_t snapshots)
     : model_(std::move(model)),
+      terms_(std::make_unique<TermSet>(model_.mechanisms(0).terms())),
       count_(snapshots),
       publications_(std::make_unique<Publication[]>(snapshots)) {  // NOLINT(*-avoid-c-arrays)
   for (std::size_t i = 0; i < count_; ++i) {
@@ -73,9 +74,8 @@ void SharedModel::serve(std::span<std::byte> block, std::span<const std::string>
   require_size("inputs", inputs.size(), model_.inputs());
   require_size("targets", targets.size(), model_.axes());
   const std::vector<Snapshot>& axes = publications_[0].axes;
-  const TermSet& terms = model_.mechanisms(0).terms();
   const BlockLayout needed =
-      BlockLayout::of(inputs, targets, terms, axes, ModelBlock::assesses(block));
+      BlockLayout::of(inputs, targets, *terms_, axes, ModelBlock::assesses(block));
   service_ = std::make_unique<Service>(
       Service{ModelBlock(block, needed), {inputs.begin(), inputs.end()}, alignment});
   if (const std::ptrdiff_t latest = latest_.load(); latest >= 0) {
@@ -124,7 +124,7 @@ std::int64_t SharedModel::with_latest(Use use) const {
 std::int64_t SharedModel::predict(std::span<const double> x, std::span<double> y) const {
   return with_latest([&](const std::vector<Snapshot>& axes) {
     answer(x, model_.inputs(), y, axes.size(),
-           [&](std::size_t k) { return axes[k].predict(model_.mechanisms(k).terms(), x); });
+           [&](std::size_t k) { return axes[k].predict(*terms_, x); });
   });
 }
 
@@ -132,7 +132,7 @@ std::int64_t SharedModel::predict(std::span<const double> x, std::span<Predictio
                                   double ahead_s) const {
   return with_latest([&](const std::vector<Snapshot>& axes) {
     answer(x, model_.inputs(), y, axes.size(),
-           [&](std::size_t k) { return axes[k].assess(model_.mechanisms(k).terms(), x, ahead_s); });
+           [&](std::size_t k) { return axes[k].assess(*terms_, x, ahead_s); });
   });
 }
 
@@ -141,7 +141,7 @@ std::int64_t SharedModel::predict_with_jacobian(std::span<const double> x, std::
   return with_latest([&](const std::vector<Snapshot>& axes) {
     answer(x, model_.inputs(), y, axes.size(), jacobian,
            [&](std::size_t k, std::span<double> gradient) {
-             return axes[k].predict_with_gradient(model_.mechanisms(k).terms(), x, gradient);
+             return axes[k].predict_with_gradient(*terms_, x, gradient);
            });
   });
 }

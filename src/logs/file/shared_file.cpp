@@ -34,6 +34,11 @@ SharedFile::SharedFile(const std::filesystem::path& file)
   if (!descriptor_.lock(LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK) {
     refuse_sharing(file, "is renewed by another process");
   }
+  // Memory of a hole in the file would end the process by SIGBUS, once the disk is full.
+  if (const int error = ::posix_fallocate(descriptor_.number(), 0, status.st_size)) {
+    throw Failure(file.string() +
+                  ": has no room on the disk: " + std::generic_category().message(error));
+  }
   const auto size = static_cast<std::size_t>(status.st_size);
   void* const content =
       ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_.number(), 0);

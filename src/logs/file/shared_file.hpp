@@ -12,7 +12,7 @@ namespace kelpie::file {
 /// An existing file in memory, which other programs map at the same time and see renewed. One
 /// process writes: the file is locked until the object's end. The file must not shrink meanwhile.
 /// Throws InputError (file) where the file is missing, no regular file, not writable, empty, or
-/// locked by another writer.
+/// locked by another writer; Failure where the disk has no room for holes of the file.
 class SharedFile {
  public:
   explicit SharedFile(const std::filesystem::path& file);

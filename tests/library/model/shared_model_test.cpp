@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <map>
@@ -125,8 +126,7 @@ TEST(SharedModel, PublishingAndPredictingAllocateNothing) {
 
 // Readers at full speed. What each of them was told by a picture is what the writer found when it
 // published it: no reader ever sees half of one and half of another.
-TEST(SharedModel, ReadersSeeWholeModelsAndNobodyWaits) {
-  const Drive drive = testing::drive(5, 600);
+void expect_whole_models(const Drive& drive) {
   SharedModel shared = make(drive);
   const std::vector<double> x{0.2, 300.0};
   std::atomic<bool> going{true};
@@ -166,6 +166,21 @@ TEST(SharedModel, ReadersSeeWholeModelsAndNobodyWaits) {
       EXPECT_EQ(truth[number], y) << number;
     }
   }
+}
+
+TEST(SharedModel, ReadersSeeWholeModelsAndNobodyWaits) {
+  expect_whole_models(testing::drive(5, 600));
+}
+
+// The guard replaces axes, while readers predict.
+TEST(SharedModel, ReadersSeeWholeModelsThroughGarbage) {
+  Drive drive = testing::drive(5, 900);
+  for (std::size_t i = 0; i < drive.y.size(); ++i) {
+    if (i < 60 || (i >= 400 && i < 440)) {
+      std::ranges::for_each(drive.y[i], [](double& target) { target *= 1e6; });
+    }
+  }
+  expect_whole_models(drive);
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   expect_refused("--replay mission.mcap", "mission.mcap: the signals to use are unclear");
   expect_refused("--config x.toml --replay mission.mcap --from mission.mcap", "--replay excludes");
   expect_refused("--config no.toml --from mission.mcap", "no.toml");
+  expect_refused("--config /dev/zero --from mission.mcap", "/dev/zero: is a device; ");
+  expect_refused("--replay /dev/zero", "/dev/zero: is a device; ");
   expect_refused("--config x.toml --from x.toml", "x.toml:4: after a closing quote");  // no table
   for (const std::string speed : {"fast", "-1", "0", "-0.0", "nan", "inf", "1e18", "1e-300"}) {
     expect_refused(from + "--speed " + speed,

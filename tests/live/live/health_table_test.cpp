@@ -100,6 +100,20 @@ TEST(HealthTable, ErrorsComeFirstAndTextsSayWhy) {
   EXPECT_EQ(live::events_of(well(), health), Lines{"no more: /odom: no publisher any more"});
 }
 
+TEST(HealthTable, ADiskThatTakesNoMoreIsSaidUntilItDoes) {
+  live::Health full = well();
+  full.record_error = "rec/live_0001.mcap: No space left on device";
+  full.learner.checkpoint_error = "Permission denied";
+  const std::vector<Alert> alerts = live::alerts_of(full, well());
+  ASSERT_EQ(alerts.size(), 2U);
+  EXPECT_EQ(alerts[0].level, AlertLevel::error);
+  EXPECT_EQ(alerts[0].text, "no checkpoint can be written: Permission denied");
+  EXPECT_EQ(alerts[1].text, "nothing can be recorded: " + full.record_error);
+  EXPECT_EQ(live::events_of(full, well()), Lines{alerts[1].text});
+  EXPECT_TRUE(live::alerts_of(well(), full).empty());
+  EXPECT_EQ(live::events_of(well(), full), Lines{"recording goes on"});
+}
+
 TEST(HealthTable, AMessageOfAnotherTypeIsSaidOnceWithItsReason) {
   live::Health health = well();
   health.topics[0].undecodable = 1;

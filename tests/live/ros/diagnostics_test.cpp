@@ -72,6 +72,10 @@ TEST(DiagnosticStatus, ADiskThatIsFullIsAnError) {
   health.learner.checkpoint_error = "no space left";
   EXPECT_EQ(part(health, "disk").level, Level::error);
   EXPECT_NE(part(health, "disk").message.find("no space left"), std::string::npos);
+  health = well();
+  health.record_error = "read-only";
+  EXPECT_EQ(part(health, "disk").level, Level::warn);
+  EXPECT_EQ(part(health, "disk").message, "nothing can be recorded: read-only");
 }
 
 }  // namespace

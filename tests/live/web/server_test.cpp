@@ -144,6 +144,8 @@ TEST_F(WebPage, HealthHoldsEveryNumberAndAlert) {
   health.learner.rows_paused = 4;
   health.learner.rows_stuck = 5;
   health.learner.median_delay_ms = 1.5;
+  health.learner.checkpoint_error = "Permission denied";
+  health.record_error = "No space left on device";
   health.sources.push_back({.name = "u", .from = "/odom:x", .silent_s = 2.0, .is_stuck = true});
   live::AxisHealth& axis = health.learner.axes.emplace_back();
   axis.name = "udot";
@@ -184,8 +186,10 @@ TEST_F(WebPage, HealthHoldsEveryNumberAndAlert) {
     alerts += alert["level"].get<std::string>() + " " + alert["text"].get<std::string>() + "\n";
   }
   EXPECT_EQ(alerts,
+            "error no checkpoint can be written: Permission denied\n"
             "warn u is silent\nwarn u doesn't change any more\n"
-            "warn learning is frozen, as was asked\nwarn no model yet\n");
+            "warn learning is frozen, as was asked\nwarn no model yet\n"
+            "warn nothing can be recorded: No space left on device\n");
 }
 
 TEST_F(WebPage, ButtonsReachTheEngine) {

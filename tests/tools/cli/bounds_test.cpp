@@ -32,7 +32,9 @@ TEST_F(Bounds, ADeviceIsNeitherLogNorModelNorConfiguration) {
        {"inspect /dev/zero", "learn /dev/zero", "learn log.csv --config /dev/zero",
         "learn log.csv --from /dev/zero", "learn log.csv --scales /dev/zero",
         "predict log.csv --model /dev/zero", "memory list /dev/zero", "simulate /dev/zero --out x",
-        "study /dev/zero", "study fleet.toml --against /dev/zero"}) {
+        "study /dev/zero", "study fleet.toml --against /dev/zero", "compare /dev/zero",
+        "tune /dev/zero", "identify /dev/zero", "plan /dev/zero", "vehicle check /dev/zero",
+        "rollout log.csv --model /dev/zero", "export /dev/zero --c x.c"}) {
     write("fleet.toml", "logs = \"log.csv\"\n");
     expect_refused(command, "/dev/zero: is a device; ");
   }

@@ -30,6 +30,7 @@ class Running {
     list.push_back(nullptr);
     child_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
     if (child_ == 0) {
+      std::signal(SIGINT, SIG_DFL);                    // the shell of a background job ignores it
       const int sink = ::open("/dev/null", O_WRONLY);  // NOLINT: POSIX is variadic
       if (::chdir(folder.c_str()) == 0 && ::dup2(sink, STDOUT_FILENO) >= 0) {
         ::execv(KELPIE_COMMAND, list.data());
@@ -65,11 +66,11 @@ class Running {
   void press_ctrl_c() const { EXPECT_EQ(::write(terminal_, "\x03", 1), 1); }
   void send(int signal) const { EXPECT_EQ(::kill(child_, signal), 0); }
 
-  /// Waits for the end: the exit code, or the signal that ended it as a negative number.
+  /// Waits for the end: the exit code, or the signal that ended it as a negative number. After two
+  /// minutes it is killed.
   int exit_code() {
-    while (read_terminal()) {
-    }
-    return reap();
+    wait_until([] { return false; });
+    return kill();
   }
   /// Kills it, unless it has ended by itself. What exit_code() says.
   int kill() {
