@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outlier node judged on faults put into the targets of training rows: the rows it is judged on
-// are clean. The learner alone. Prints what it measures. Of the real log it takes the first 5,000
+// are clean. The learner alone. Prints what it measures. Of the real log it takes the first 3,000
 // rows; KELPIE_WHOLE_LOG=1 takes all of them, for the tables of docs/measured/accuracy.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -160,7 +160,7 @@ TEST(Faults, LeaveTheBufferAndDoLittleHarmInSimulation) {
   vehicle::Scenario scenario =
       vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
   scenario.phases.resize(1);
-  scenario.phases.front().duration_s = 5000.0;
+  scenario.phases.front().duration_s = 3000.0;
   const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
   expect_robust(log::make_dataset(table, log::guess_roles(table, {})));
 }
@@ -173,9 +173,9 @@ TEST(Faults, LeaveTheBufferAndDoLittleHarmOnTheRealLog) {
   log::Table table = log::read_csv(file);
   if (std::getenv("KELPIE_WHOLE_LOG") == nullptr) {  // NOLINT: no thread writes it
     for (auto& column : table.columns) {
-      column.resize(5000);
+      column.resize(3000);
     }
-    table.lines.resize(5000);
+    table.lines.resize(3000);
   }
   expect_robust(log::make_dataset(table, log::guess_roles(table, {.rate_hz = 4.0})));
 }
