@@ -47,6 +47,8 @@ duration_s = {DAMAGE_S}.0
 configuration = 'damaged'
 duration_s = 250.0
 """
+# Pages show alike what was learned of few samples and of many.
+FEW_SAMPLES = ["--set", "buffer=60", "--set", "anchors=20"]
 UNITS = "u=m/s,v=m/s,r=rad/s,udot=m/s^2,vdot=m/s^2,rdot=rad/s^2"
 STUDY = """
 name = 'two missions'
@@ -96,9 +98,9 @@ def pages(tmp_path_factory) -> dict[str, Path]:
     (scenarios / "tiny.toml").write_text(SCENARIO)
 
     def learn() -> None:
-        kelpie("learn", "log.csv", "--out", "learn")
+        kelpie("learn", "log.csv", *FEW_SAMPLES, "--out", "learn")
         kelpie("rollout", "log.csv", "--model", "learn/model.json", "--out", "rollout")
-        kelpie("learn", "log.csv", "--targets", "udot", "--out", "axis")
+        kelpie("learn", "log.csv", "--targets", "udot", *FEW_SAMPLES, "--out", "axis")
 
     def reproduce() -> None:
         call("kelpie-lab", "reproduce", "--quick", "--scenario", "tiny", "--out", "reproduce",
@@ -107,12 +109,14 @@ def pages(tmp_path_factory) -> dict[str, Path]:
     steps = [
         learn,
         lambda: kelpie("study", "study.toml", "--out", "study"),
-        lambda: kelpie("learn", "damaged.csv", "--units", UNITS, "--out", "damaged"),
-        lambda: kelpie("tune", "short.csv", "--candidates", "4", "--set", "terms=none", "--threads",
-                       "1", "--out", "tune"),
-        lambda: kelpie("compare", "short.csv", "--threads", "1", "--out", "compare"),
+        lambda: kelpie("learn", "damaged.csv", "--units", UNITS, *FEW_SAMPLES, "--out", "damaged"),
+        lambda: kelpie("tune", "short.csv", "--candidates", "4", "--set", "terms=none",
+                       *FEW_SAMPLES, "--threads", "1", "--out", "tune"),
+        lambda: kelpie("compare", "short.csv", *FEW_SAMPLES, "--threads", "1", "--out",
+                       "compare"),
         lambda: kelpie("learn", hostile, "--targets", "udot" + EVIL, "--targets",
-                       "vdot" + 10_000 * "x", "--set", "learner=svr", "--out", "hostile"),
+                       "vdot" + 10_000 * "x", "--set", "learner=svr", *FEW_SAMPLES, "--out",
+                       "hostile"),
         lambda: kelpie("identify", "log.csv", "--out", "identify")]
     found = {"damaged": "damaged/report.html", "identify": "identify/identify.html",
              "study": "study/study.html", "learn": "learn/report.html", "axis": "axis/report.html",

@@ -29,13 +29,14 @@ def test_learns_what_the_command_learns(build_dir, tmp_path):
     subprocess.run([command, "simulate", SOURCE_DIR / "scenarios/small.toml", "--out", csv],
                    check=True, capture_output=True)
     subprocess.run([command, "learn", csv, "--inputs", ",".join(INPUTS), "--targets",
-                    ",".join(TARGETS), "--split", "tail", "--set", "buffer=200", "--set",
-                    "gamma=0.1,0.2,0.3", "--align", "none", "--out", tmp_path], check=True, capture_output=True)
+                    ",".join(TARGETS), "--split", "tail", "--set", "buffer=60", "--set",
+                    "gamma=0.1,0.2,0.3", "--align", "none", "--out", tmp_path],
+                   check=True, capture_output=True)
     table = np.genfromtxt(csv, delimiter=",", names=True)
     X = np.column_stack([table[name] for name in INPUTS])
     y = np.column_stack([table[name] for name in TARGETS])
     rows = json.loads((tmp_path / "result.json").read_text())["samples_shown"]
-    model = kelpie.DynamicsModel(inputs=INPUTS, targets=TARGETS, buffer=200,
+    model = kelpie.DynamicsModel(inputs=INPUTS, targets=TARGETS, buffer=60,
                                  gamma=(0.1, 0.2, 0.3))
     for part in np.array_split(np.arange(rows), 7):
         model.partial_fit(X[part], y[part], table["t"][part])

@@ -50,13 +50,14 @@ def test_a_data_frame_is_learned_as_the_command_learns(build_dir, tmp_path):
                                        "derived = {vdot = 'd(v)', udot = 'd(u)', rdot = 'd(r)'}\n"
                                        "units = {u = 'm/s'}\n")
     subprocess.run([command, "learn", csv, "--config", tmp_path / "log.toml", "--split", "none",
-                    "--align", "none", "--out", tmp_path], check=True, capture_output=True)
+                    "--align", "none", "--set", "buffer=60", "--out", tmp_path],
+                   check=True, capture_output=True)
     frame = kelpie.read_log(csv, tmp_path / "log.toml")
     assert isinstance(frame, pandas.DataFrame)
     assert list(frame) == ["t", "v", "u", "r", "th2", "th1", "vdot", "udot", "rdot"]
     assert frame.attrs["inputs"] == ["v", "u", "r", "th2", "th1"]
     assert frame.attrs["units"] == {"u": "m/s"}
-    model = kelpie.DynamicsModel(inputs=frame.attrs["inputs"]).partial_fit(frame)
+    model = kelpie.DynamicsModel(inputs=frame.attrs["inputs"], buffer=60).partial_fit(frame)
     theirs = kelpie.DynamicsModel.load(tmp_path / "model.json")
     assert np.array_equal(model.predict(frame.dropna()), theirs.predict(frame.dropna()))
 

@@ -23,6 +23,11 @@ def table():
 
 
 @pytest.fixture(scope="module")
+def compared(table):
+    return kelpie.compare(table, settings=QUICK, split="pieces")
+
+
+@pytest.fixture(scope="module")
 def command(build_dir):
     def run(*words):
         return subprocess.run([build_dir / "kelpie", *map(str, words)], check=True, text=True,
@@ -103,8 +108,7 @@ def test_a_data_frame_gives_the_numbers_of_its_file(table, tmp_path):
         kelpie.report(table.drop(columns="t"))
 
 
-def test_comparisons_and_searches(table):
-    compared = kelpie.compare(table, settings=QUICK, split="pieces")
+def test_comparisons_and_searches(table, compared):
     assert [one["kind"] for one in compared["contenders"]][0] == "kelpie"
     assert compared.table.loc[("udot", "kelpie"), "r2_final"] > 0.8
     assert compared["recommendation"] and "<html" in compared.page
@@ -143,10 +147,9 @@ def test_mistakes_are_told_as_by_the_command(table, tmp_path):
         kelpie.report(wrong, settings=QUICK)
 
 
-def test_figures(table):
+def test_figures(table, compared):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    compared = kelpie.compare(table, settings=QUICK, split="pieces")
     axes = kelpie.plot.comparison(compared)
     assert [tick.get_text() for tick in axes.get_yticklabels()] == TARGETS
     shown = dict(zip((line.get_label() for line in axes.lines),

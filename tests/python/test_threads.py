@@ -32,7 +32,7 @@ def test_arrays_as_wanted_are_not_copied(log):
 
 
 def test_other_threads_run_while_one_learns(log):
-    X, y = np.tile(log.X, (20, 1)), np.tile(log.y, (20, 1))
+    X, y = np.tile(log.X, (5, 1)), np.tile(log.y, (5, 1))
     model = kelpie.DynamicsModel(**SMALL).fit(X[:600], y[:600])
     done = threading.Event()
     failures = []

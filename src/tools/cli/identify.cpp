@@ -58,10 +58,8 @@ constexpr std::array kEngineFiles{
     EngineFile{"python_vehicle_simulator", "python_vehicle.py", format::python_vehicle},
     EngineFile{"ardupilot", "ardupilot.parm", format::ardupilot_parm}};
 
-struct IdentifyArguments : PlanOptions {
+struct IdentifyArguments : IdentificationOptions {
   std::optional<int> only;
-  std::vector<std::string> thrusters;
-  std::vector<std::string> thrust;
   std::optional<double> mass_kg;
   std::optional<double> surge_added_mass_kg;
   std::string vehicle;
@@ -293,11 +291,7 @@ void run_identify(const IdentifyArguments& given) {
       .document = options.answer.json ? format::parameters_json(result.found, result.frame) : "",
       .files = {},
       .next = {}};
-  for (const auto& [name, content] : files) {
-    if (content) {
-      answer.files.emplace_back("file", (out.path() / name).string());
-    }
-  }
+  answer.add_files(files, out.path());
   answer.next = {result.found.scale == study::ScaleSource::none
                      ? fmt::format("kelpie identify {} --mass KG   (masses and forces, not ratios)",
                                    options.text(options.config))
@@ -311,26 +305,17 @@ void add_identify(CLI::App& app) {
   const auto [command, options] = add_command(
       app, "identify", "Estimate masses, drags and thrusts of a vehicle from a log, for simulators",
       run_identify);
-  options->check_targets = false;  // identify has a check of its own
-  options->log.add_to(*command);
-  add_files(command, "more", options->more, "logs of the same columns, joined to the first");
+  add_identification_options(*command, *options);
   add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");
-  add_since_option(*command, options->since_s);
-  add_align_option(*command, options->align);
-  add_file(command, "--config", options->config, "TOML file; its [log] says what is in the log");
-  add_set(command, options->set, "states=SURGE,SWAY,YAW where names don't tell");
   command->add_option("--only", options->only,
                       "number of the configuration; else the first in the log");
-  add_list(command, "--thrusters", options->thrusters,
-           "inputs that are thrusters' speeds, separated by commas; else by their names");
-  CLI::Option* const thrust = add_thrust_option(*command, options->thrust);
   command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]")
       ->check(within(kLeastMass, kMostScale));
   command
       ->add_option("--surge-added-mass", options->surge_added_mass_kg,
                    "gives the scale together with the mass [kg]; else assumed, 0.2 of it")
       ->check(within(kLeastMass, kMostScale))
-      ->excludes(thrust);
+      ->excludes(command->get_option("--thrust"));
   add_file(
       command, "--vehicle", options->vehicle,
       "vehicle file (docs/reference/simulator.md): with the places of the log's thrusters all six "

@@ -332,9 +332,18 @@ void add_units_option(CLI::App& command, std::vector<std::string>& units) {
            "knots, g and time stamps (t=ms) are converted to the SI");
 }
 
-CLI::Option* add_thrust_option(CLI::App& command, std::vector<std::string>& thrust) {
-  return add_list(&command, "--thrust", thrust,
-                  "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
+void add_identification_options(CLI::App& command, IdentificationOptions& options) {
+  options.check_targets = false;
+  options.log.add_to(command);
+  add_files(&command, "more", options.more, "logs of the same columns, joined to the first");
+  add_since_option(command, options.since_s);
+  add_align_option(command, options.align);
+  add_file(&command, "--config", options.config, "TOML file; its [log] says what is in the log");
+  add_set(&command, options.set, "states=SURGE,SWAY,YAW where names don't tell");
+  add_list(&command, "--thrusters", options.thrusters,
+           "inputs that are thrusters' speeds, separated by commas; else by their names");
+  add_list(&command, "--thrust", options.thrust,
+           "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
 }
 
 std::vector<std::pair<std::string, double>> known_thrusts(const std::vector<std::string>& thrust) {

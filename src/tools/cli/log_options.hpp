@@ -118,8 +118,12 @@ void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
 /// The option --units: columns whose values are converted to the SI.
 void add_units_option(CLI::App& command, std::vector<std::string>& units);
 
-/// --thrust of commands that identify: NAME=K, forward thrust K n² in N, gives the scale.
-CLI::Option* add_thrust_option(CLI::App& command, std::vector<std::string>& thrust);
+/// The options of `kelpie identify` and `kelpie plan`, which have a check of targets of their own.
+struct IdentificationOptions : PlanOptions {
+  std::vector<std::string> thrusters;
+  std::vector<std::string> thrust;  ///< known_thrusts()
+};
+void add_identification_options(CLI::App& command, IdentificationOptions& options);
 
 /// The thrusts of --thrust, N per square of the thruster's unit. Throws InputError (--thrust) on
 /// text without name, and on a number that is not above 0 and at most 1e9.

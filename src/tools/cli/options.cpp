@@ -84,6 +84,16 @@ void AnswerOptions::begin() const {
   }
 }
 
+void Answer::add_files(const file::FileSet& written, const std::filesystem::path& folder,
+                       const std::map<std::string, std::string>& kinds) {
+  for (const auto& [name, content] : written) {
+    if (content) {
+      const auto kind = kinds.find(name);
+      files.emplace_back(kind == kinds.end() ? "file" : kind->second, (folder / name).string());
+    }
+  }
+}
+
 void give(const Answer& answer, const AnswerOptions& options) {
   if (options.json) {
     answer.document.tell(print_document);

@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -80,6 +82,11 @@ struct Answer {
   file::Content document{""};                                ///< for --json
   std::vector<std::pair<std::string, std::string>> files{};  ///< what each is, and its path
   std::vector<std::string> next{};                           ///< commands that a user needs next
+
+  /// Adds the files of `written` that have content, with their places in `folder`. `kinds` tells
+  /// what a file is, by name; the others are called "file".
+  void add_files(const file::FileSet& written, const std::filesystem::path& folder,
+                 const std::map<std::string, std::string>& kinds = {});
 };
 
 /// Prints the answer to stdout.

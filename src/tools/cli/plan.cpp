@@ -30,9 +30,7 @@ constexpr const char* kNumbers = "plan.json";
 constexpr const char* kPlanPage = "plan.html";
 constexpr const char* kScript = "plan.lua";
 
-struct DriveArguments : PlanOptions {
-  std::vector<std::string> thrusters;
-  std::vector<std::string> thrust;
+struct DriveArguments : IdentificationOptions {
   std::vector<std::string> tell;
   std::vector<std::string> apart;
   double percent = 5.0;
@@ -158,12 +156,7 @@ void run_plan(const DriveArguments& options) {
                 .document = options.answer.json ? format::drive_json(drive) : "",
                 .files = {},
                 .next = {}};
-  for (const auto& [name, content] : files) {
-    if (content) {
-      answer.files.emplace_back(name == kSetpoints ? "setpoints" : "file",
-                                (out.path() / name).string());
-    }
-  }
+  answer.add_files(files, out.path(), {{kSetpoints, "setpoints"}});
   answer.next = {"kelpie identify LOG DRIVE   (the log and the log of the drive, joined)"};
   give(answer, options.answer);
 }
@@ -174,16 +167,7 @@ void add_plan(CLI::App& app) {
   const auto [command, options] = add_command(
       app, "plan", "Choose what to drive next, so that a log tells the vehicle's parameters",
       run_plan);
-  options->check_targets = false;
-  options->log.add_to(*command);
-  add_files(command, "more", options->more, "logs of the same columns, joined to the first");
-  add_since_option(*command, options->since_s);
-  add_align_option(*command, options->align);
-  add_file(command, "--config", options->config, "TOML file; its [log] says what is in the log");
-  add_set(command, options->set, "states=SURGE,SWAY,YAW where names don't tell");
-  add_list(command, "--thrusters", options->thrusters,
-           "inputs that are thrusters' speeds, separated by commas; else by their names");
-  add_thrust_option(*command, options->thrust);
+  add_identification_options(*command, *options);
   add_list(command, "--tell", options->tell,
            "parameters of `kelpie identify`, or words of them, as in sway_drag,th1; else all "
            "masses, drags, thrusts and arms");

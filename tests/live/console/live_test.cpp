@@ -113,9 +113,9 @@ TEST_F(LiveCommand, LogsOfAutopilotsEndWithTheModelThatLearnGives) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     expect_model_of_learn("out", "auto", "'" + log.string() + "'");
     EXPECT_NE(outcome.err.find("--from of `kelpie live` is called --replay"), std::string::npos);
-    const Outcome drafted = testing::succeeded(
-        run("live --replay '" + log.string() +
-            "' --set buffer=60 --set anchors=20 --speed max --fresh --out drafted"));
+    const Outcome drafted =
+        testing::succeeded(run("live --replay '" + log.string() +
+                               "' --speed max --fresh --out drafted" + testing::kFewSamples));
     EXPECT_EQ(model_of("drafted"), model_of("out"));
     EXPECT_NE(drafted.out.find("taken by types and names"), std::string::npos) << drafted.out;
     fs::remove(folder_ / "x.toml");
@@ -147,13 +147,14 @@ TEST_F(LiveCommand, DeltasAndDirectionsOfArdusubAreTheSameAsInLearn) {
     ASSERT_NE(config.find(by_hand), std::string::npos) << config;
     config.replace(config.find(by_hand), by_hand.size(), "");
     config.replace(config.find("[log]\n"), 6, "[log]\nmirror_motors = true\n");
-    write("x.toml", config);
+    write("x.toml", kSmall + config);
     testing::succeeded(
         run("live --config x.toml --from " + name + " --speed max --fresh --out out"));
     expect_model_of_learn("out", "auto", name);
     const std::string mirrored = model_of("out");
     fs::remove(folder_ / "x.toml");
-    testing::succeeded(run("live --replay " + name + " --speed max --fresh --out drafted"));
+    testing::succeeded(
+        run("live --replay " + name + " --speed max --fresh --out drafted" + testing::kFewSamples));
     EXPECT_EQ(model_of("drafted"), mirrored);
   }
 }

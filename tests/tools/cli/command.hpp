@@ -50,6 +50,9 @@ inline void expect_refused(const Outcome& outcome, const std::string& message) {
   EXPECT_NE(outcome.err.find(message), std::string::npos) << message << "\n" << outcome.err;
 }
 
+/// Settings for tests of what holds with few samples as with many: a fifth of the computing.
+inline const std::string kFewSamples = " --set buffer=60 --set anchors=20";
+
 /// Commands in a folder of their own; the names of files are relative to the folder.
 class CommandTest : public ::testing::Test {
  protected:

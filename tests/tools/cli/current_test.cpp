@@ -34,10 +34,11 @@ std::string text_of(const Log& log, const std::string& heading) {
 
 class CurrentOfALog : public testing::CommandTest {
  protected:
-  void SetUp() override { write("log.csv", text_of(Log(Log::wandering), "psi")); }
+  void SetUp() override { write("log.csv", text_of(Log(Log::wandering, 2500), "psi")); }
 
   Outcome learn(const std::string& options, const std::string& out) {
-    return testing::succeeded(run("learn log.csv --split blocks " + options + " --out " + out));
+    return testing::succeeded(
+        run("learn log.csv --split blocks " + options + testing::kFewSamples + " --out " + out));
   }
 
   nlohmann::json json(const std::string& file) {
@@ -106,7 +107,7 @@ TEST_F(CurrentOfALog, AHeadingAmongTheInputsLeavesThemWithTheCurrent) {
 }
 
 TEST_F(CurrentOfALog, StillWaterIsLearnedAsBefore) {
-  write("log.csv", text_of(Log(Log::still), "psi"));
+  write("log.csv", text_of(Log(Log::still, 2500), "psi"));
   learn("", "found");
   learn("--current none", "none");
   EXPECT_TRUE(json("found/result.json")["current"]["current"].is_null());

@@ -79,8 +79,8 @@ TEST_F(DraftCommand, ADriveOfArdusubIsLearnedFromEitherRecordingWithoutAConfigur
   write("drive.tlog", testing::ArdusubDrive::tlog().text());
   write("drive.BIN", testing::ArdusubDrive::bin());
   for (const std::string name : {"drive.tlog", "drive.BIN"}) {
-    const Outcome outcome =
-        testing::succeeded(run("learn " + name + " --verbose --out " + name + ".out"));
+    const Outcome outcome = testing::succeeded(
+        run("learn " + name + " --verbose --out " + name + ".out" + testing::kFewSamples));
     for (const char* const said :
          {"ArduSub's frame: vectored, 6 motors", "rows while the motors are armed: 100 s of 140 s",
           "messages while the motors were disarmed", "9 (lights 1)"}) {

@@ -15,14 +15,14 @@ using testing::Outcome;
 
 class Poses : public testing::CommandTest {
  protected:
-  void SetUp() override { write("log.csv", testing::PoseLog(900.0).csv(0.01)); }
+  void SetUp() override { write("log.csv", testing::PoseLog(450.0).csv(0.01)); }
 
   nlohmann::json json(const std::string& file) { return nlohmann::json::parse(content(file)); }
 };
 
 TEST_F(Poses, AreLearnedWithoutAVelocityInTheLog) {
-  const Outcome outcome =
-      testing::succeeded(run("learn log.csv --pose x,y,psi --inputs u,v,r,n,m --rate 5 --out out"));
+  const Outcome outcome = testing::succeeded(run(
+      "learn log.csv --pose x,y,psi --inputs u,v,r,n,m --rate 5 --out out" + testing::kFewSamples));
   EXPECT_NE(outcome.out.find("poses: velocities and accelerations over windows of"),
             std::string::npos)
       << outcome.out;
@@ -42,8 +42,9 @@ TEST_F(Poses, OfAConfigurationAndOfTheOptionGiveTheSameRows) {
         "[log]\ntime = \"t\"\nrate = 5\nwindow = \"auto\"\npose = {x = \"x\", y = \"y\", yaw = "
         "\"psi\"}\n[log.commands]\nn = \"n\"\nm = \"m\"\n");
   testing::succeeded(run("convert log.csv --config c.toml --out a.csv"));
-  testing::succeeded(run("learn log.csv --config c.toml --out one"));
-  testing::succeeded(run("learn log.csv --pose x,y,psi --inputs u,v,r,n,m --rate 5 --out two"));
+  testing::succeeded(run("learn log.csv --config c.toml --out one" + testing::kFewSamples));
+  testing::succeeded(run("learn log.csv --pose x,y,psi --inputs u,v,r,n,m --rate 5 --out two" +
+                         testing::kFewSamples));
   EXPECT_EQ(json("one/model.json")["axes"], json("two/model.json")["axes"]);
   EXPECT_NE(content("a.csv").find("udot"), std::string::npos);
 }
