@@ -80,7 +80,6 @@ TEST(TermSet, RefusesWhatMakesNoSense) {
   EXPECT_THROW(TermSet::from(many, kPlanar, 3), InputError);
 }
 
-// A thruster that has only run ahead gives its astern term no values to be scaled by.
 TEST(TermSet, PowersOfAnInput) {
   const std::vector<std::string> inputs{"u", "n"};
   const TermSet set =
@@ -94,6 +93,7 @@ TEST(TermSet, PowersOfAnInput) {
   }
 }
 
+// A thruster that has only run ahead gives its astern term no values to be scaled by.
 TEST(TermSet, ATermNotSeenYetHasASensibleScale) {
   const TermSet set = TermSet::from("u;max(th1,0)^2;-min(th1,0)^2;0*u", kPlanar, 3);
   RandomStream random(1, "terms");
