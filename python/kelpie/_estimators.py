@@ -45,6 +45,10 @@ inputs : names of the columns of X. Default: names of a data frame, else x0, x1,
 targets : names of the columns of y. Default: names of a data frame, else y0, y1, ...
 rate : rows per second [Hz] where no times are given; forgetting depends on age. Default: none, so
     that a log without times is refused (fit() says more).
+nominal : what is known of the vehicle beforehand, for fit() and the first partial_fit(): a
+    model.json of an earlier drive or of a like vehicle, or several, of which the mean is taken; or
+    coefficients by target and term, as {{"udot": {{"u": -0.4, "u*|u|": -1.2, "1": 0.0}}}}. A term that
+    is not named has 0 (docs/method/committee.md).
 
 Further parameters are the settings of `kelpie config`. None takes the value of the preset. With
 several targets, a setting may be a list with a value for each target.

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Mapping
 from statistics import NormalDist
 from typing import Any, Optional, TypeVar, Union, overload
 
@@ -355,12 +356,22 @@ class Learner(Parameters):
             texts["warmup"] = str(min(usual, most_warmup))
         model = _kelpie.LiveModel(_names(inputs, "inputs", "x", rows.shape[1]),
                                   _names(names, "targets", "y", width), texts)
+        self._begin_with_nominal(model)
         self._adopt(model, flat=targets.ndim == 1)
         self._by_name = given.by_name
         self.__dict__.pop("feature_names_in_", None)
         if columns is not None:
             self.feature_names_in_ = np.array(columns, dtype=object)
         return model
+
+    def _begin_with_nominal(self, model: _kelpie.LiveModel) -> None:
+        if isinstance(self.nominal, Mapping):
+            for target, coefficients in self.nominal.items():
+                model.set_nominal(target, dict(coefficients))
+        elif self.nominal is not None:
+            files = ([self.nominal] if isinstance(self.nominal, (str, os.PathLike))
+                     else self.nominal)
+            model.set_nominal_models([_kelpie.TrainedModel.read(existing(file)) for file in files])
 
     def _warn_of_mistakes(self, model: _kelpie.LiveModel, given: _frames.Given, rows: Floats,
                           targets: Floats) -> None:

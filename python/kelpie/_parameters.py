@@ -6,13 +6,16 @@ from __future__ import annotations
 import difflib
 import functools
 import inspect
-from collections.abc import Sequence
+import os
+from collections.abc import Mapping, Sequence
 from typing import Any, Optional, TypeVar, Union
 
 from ._contract import BaseEstimator, RegressorMixin
 
 Number = Union[float, Sequence[float], None]
 Word = Union[str, Sequence[str], None]
+File = Union[str, "os.PathLike[str]"]
+Nominal = Union[File, Sequence[File], Mapping[str, Mapping[str, float]], None]
 Self = TypeVar("Self", bound="ParameterAccess")
 
 
@@ -72,6 +75,7 @@ class Parameters(ParameterAccess, RegressorMixin, BaseEstimator):
         inputs: Optional[Sequence[str]] = None,
         targets: Word = None,
         rate: Optional[float] = None,
+        nominal: Nominal = None,
         # Essential
         preset: str = "default",
         learner: Optional[str] = None,

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/text.hpp"
 #include "file/json.hpp"
 #include "format/checkpoint_file.hpp"
 #include "format/model_parts.hpp"
@@ -16,6 +17,7 @@
 #include "kelpie/motion/term_set.hpp"
 #include "model/dynamics_axis.hpp"
 #include "model/model_json.hpp"
+#include "study/nominal.hpp"
 
 namespace kelpie::python {
 namespace {
@@ -220,6 +222,27 @@ std::int64_t LiveModel::samples() const {
   const py::gil_scoped_release release;
   const std::shared_lock lock(mutex_);
   return samples_;
+}
+
+void LiveModel::set_nominal(const std::string& target,
+                            const std::map<std::string, double>& coefficients) {
+  const auto found = std::ranges::find(targets_, target);
+  require(found != targets_.end(), "nominal",
+          "'" + target + "' is no target; targets are " + join_text(targets_, ", "));
+  std::vector<Coefficient> known;
+  for (const auto& [term, value] : coefficients) {
+    known.push_back({term, value});
+  }
+  model_.set_nominal(static_cast<std::size_t>(found - targets_.begin()), known);
+}
+
+void LiveModel::set_nominal_models(const std::vector<TrainedModel>& models) {
+  const TermSet& terms = model_.mechanisms(0).terms();
+  std::vector<study::Nominal> all;
+  for (const TrainedModel& model : models) {
+    all.push_back(study::nominal_of(model, targets_, terms));
+  }
+  study::give(study::mean_of(all), model_);
 }
 
 py::tuple LiveModel::state() const {

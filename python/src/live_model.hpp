@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
@@ -26,6 +27,11 @@ class LiveModel {
   /// Learns rows x (n, inputs) and y (n, axes) at the times t (n) [s], one after the other. Returns
   /// the decisions (n, axes). After an interrupt, earlier rows stay learned.
   py::array_t<Decision> update(const Array& x, const Array& y, const Array& t);
+
+  /// DynamicsModel::set_nominal(), of the axis of a target.
+  void set_nominal(const std::string& target, const std::map<std::string, double>& coefficients);
+  /// The same, of the mean of earlier models (study::nominal_of()).
+  void set_nominal_models(const std::vector<TrainedModel>& models);
 
   /// DynamicsModel::learn_held_back().
   void learn_held_back() {

@@ -28,6 +28,10 @@ void bind_live_model(py::module_& module) {
            "Names of inputs and targets, and settings as text by name. ValueError on wrong ones.")
       .def_static("resume_from", &LiveModel::resume_from, py::arg("trained"), py::arg("start_s"),
                   "A model that goes on learning where a trained one stands, from that time [s].")
+      .def("set_nominal", &LiveModel::set_nominal, py::arg("target"), py::arg("coefficients"),
+           "Begins with coefficients of a target's terms, by their text.")
+      .def("set_nominal_models", &LiveModel::set_nominal_models, py::arg("models"),
+           "Begins with the mean of earlier models.")
       .def(
           "update", &LiveModel::update, py::arg("X").noconvert(), py::arg("y").noconvert(),
           py::arg("t").noconvert(),

@@ -47,7 +47,7 @@ def test_score_is_scikit_learns(log):
 
 
 def test_parameters_are_those_of_the_library():
-    names = ["inputs", "targets", "rate"]
+    names = ["inputs", "targets", "rate", "nominal"]
     for name, _, _, _ in _kelpie.setting_docs():
         names.append(_settings.parameter_name(name))
         names += [_settings.ALIASES[name]] if name in _settings.ALIASES else []

@@ -217,3 +217,22 @@ def test_few_rows_make_a_model(log):
     assert np.allclose(waiting.predict(log.X[:1]), log.y[:40].mean(axis=0))
     with pytest.raises(ValueError, match="no model is in service yet"):
         waiting.save("nowhere.json")
+
+
+def test_begins_with_what_is_known(log, learned, tmp_path):
+    few, later = slice(0, 70), slice(300, 600)
+    learned.save(tmp_path / "before.json")
+    true = {"udot": {"u": -1.0, "u*|u|": -2.0, "n1*|n1|": 0.02},
+            "vdot": {"v": -1.0, "v*|v|": -3.0, "n2*|n2|": 0.01}}
+    without = kelpie.DynamicsModel(**SMALL).fit(log.X[few], log.y[few], log.t[few])
+    for nominal in (tmp_path / "before.json", [tmp_path / "before.json"] * 2, true):
+        model = kelpie.DynamicsModel(**SMALL, nominal=nominal)
+        model.fit(log.X[few], log.y[few], log.t[few])
+        assert model.score(log.X[later], log.y[later]) > without.score(log.X[later], log.y[later])
+    for nominal, message in (({"wdot": {}}, "'wdot' is no target"),
+                             ({"udot": {"w": 1.0}}, "w: not a term of this model"),
+                             ({"udot": {"u": np.nan}}, "u: has to be a finite coefficient")):
+        with pytest.raises(ValueError, match=message):
+            kelpie.DynamicsModel(**SMALL, nominal=nominal).fit(log.X[few], log.y[few], log.t[few])
+    with pytest.raises(FileNotFoundError):
+        kelpie.DynamicsModel(**SMALL, nominal="nothing.json").fit(log.X[few], log.y[few])

@@ -16,6 +16,7 @@ namespace kelpie {
 class Budget;
 class Diagnosis;
 class DynamicsAxis;
+struct Coefficient;
 struct Finding;
 struct StoredPastModel;
 struct TrainedModel;
@@ -98,6 +99,15 @@ class DynamicsModel final : public OnlineModel {
   /// that nothing has been learned yet, inputs of the same number, order and units, no more models
   /// than the setting `memory`, samples in each model, and finite numbers.
   void set_past_models(std::size_t axis, std::vector<StoredPastModel> models);
+
+  /// Gives an axis coefficients of physics terms known beforehand, as of the vehicle's equations of
+  /// motion or of an earlier model, from which learning begins (docs/method/committee.md): terms by
+  /// their text (TermSet::text()), `1` for the constant; terms without a coefficient have 0. An
+  /// empty list: nothing is known. Errors of coefficients are not read. Without effect on a learner
+  /// alone (`learner = svr`).
+  /// Requires that nothing has been learned yet. Throws InputError on an axis or term that the
+  /// model does not have, a term given twice, or a value that is not finite. Allocates.
+  void set_nominal(std::size_t axis, std::span<const Coefficient> known);
 
   /// The whole state as bytes: everything learned, and every input of the next update.
   std::string save() const;

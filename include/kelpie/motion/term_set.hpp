@@ -64,6 +64,7 @@ class TermSet {
   /// leaves them out, too.
   const std::vector<std::size_t>& attitude() const { return attitude_; }
   const std::string& text(std::size_t k) const { return terms_[k].text(); }  ///< The formula.
+  std::vector<std::string> texts() const;  ///< All formulas, in order. Allocates.
   const Expression& term(std::size_t k) const { return terms_[k]; }  ///< The parsed formula.
 
   /// The values of all terms at a raw sample; 0 for a term that is not finite. Requires room for

@@ -19,6 +19,8 @@ namespace {
 constexpr std::array<std::string_view, 6> kNames{"learner", "precise", "memory",
                                                  "physics", "line",    "mean"};
 
+constexpr std::size_t kLine = 4;
+
 // Samples of many inputs lie farther apart.
 double input_width(std::size_t inputs) {
   return std::sqrt(kOnline.members.gamma_inputs / static_cast<double>(inputs));
@@ -372,6 +374,18 @@ void Committee::rescale_fits(const SampleMap& map) {
   to_learn_.begin(buffer, 1);
   kernels_only_ = true;
   relearn_slice();
+}
+
+void Committee::expect(std::span<const double> weights) {
+  if (alone()) {
+    return;
+  }
+  fits_->line.expect(weights, kOnline.members.nominal_known);
+  std::vector<double> shares = first_shares(false);
+  as_vector(shares) *= 1.0 - kOnline.members.nominal_share;
+  shares[kLine] += kOnline.members.nominal_share;
+  shares_.resume_from(shares);
+  freeze_copies();
 }
 
 void Committee::shift(std::span<const double> step, const Decision& news) {

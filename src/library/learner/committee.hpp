@@ -95,6 +95,10 @@ class Committee final : public OnlineRegressor {
   /// committee without samples, and functions of as many inputs and terms. Allocates.
   void resume_from(const FunctionMix& said, const PastModel::Completion& complete, double t);
 
+  /// Begins with weights of the terms known beforehand; the last number is of the bias. `line`
+  /// takes these as a prior, and a larger share until errors are known. Requires a committee without samples. Allocates nothing.
+  void expect(std::span<const double> weights);
+
   /// Follows a change of the vehicle by a known step of the terms' weights; the last number is of
   /// the bias. All members but `mean` take the step; those with terms know the vehicle less well
   /// from a new change on (`news`, as AdaptiveSvr::shift()). Allocates nothing.

@@ -121,6 +121,14 @@ void SparseRegression::weaken() {
   forget_samples();
 }
 
+void SparseRegression::expect(std::span<const double> weights, double samples) {
+  clear();
+  std::ranges::copy(weights.first(settings_.terms), expected_.begin());
+  expected_[first_centre() - 1] = weights.back();
+  std::ranges::fill(std::span(information_).first(first_centre()), samples);
+  forget_samples();
+}
+
 void SparseRegression::start_over() {
   samples_ = kOnline.members.ignored_first;
   forget_samples();

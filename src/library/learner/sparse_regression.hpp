@@ -91,6 +91,11 @@ class SparseRegression {
   /// vehicle similar to the former vehicle. Allocates nothing.
   void weaken();
 
+  /// Forgets everything but τ, and expects these weights of the terms, known as well as by so many
+  /// samples: `weights` has a number per term in use or more, the last is of the bias. Allocates
+  /// nothing.
+  void expect(std::span<const double> weights, double samples);
+
   /// Forgets the samples since clear() or weaken() and keeps the usual error: a second round over
   /// the samples recognises outliers from its start. Allocates nothing.
   void start_over();

@@ -76,6 +76,8 @@ struct OnlineTuning {
     std::size_t error_least = 30;    ///< errors before the usual error is known: by hand
     std::size_t error_every = 16;    ///< errors between two medians: by hand
     double kept = 300.0;             ///< independent samples behind the terms' weights, at a change
+    double nominal_known = 20.0;     ///< samples behind weights known beforehand, committee.md
+    double nominal_share = 0.5;      ///< first share of `line` with such weights, beyond the usual
     double caution = 0.5;            ///< κ of a member's disagreement, method/committee.md
     /// Shares before the first errors, relative to each other, in the order of the members: the
     /// simpler a member, the less a few samples mislead it.

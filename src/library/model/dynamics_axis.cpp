@@ -123,14 +123,20 @@ void DynamicsAxis::follow(std::span<const CommandGain> gains, std::span<const do
     learner_.shift({}, news);
     return;
   }
+  learner_.shift(as_span(scaled_weights(step)), news);
+}
+
+// The last coefficient is of the term 1; terms that are not named have 0.
+ShortVector<kMostTerms + 1> DynamicsAxis::scaled_weights(
+    std::span<const double> coefficients) const {
   ShortVector<kMostTerms + 1> scaled(terms().size() + 1);
   const double scale = scaling()->target.scale;
   std::ranges::fill(scaled, 0.0);
-  for (std::size_t k = 0; k + 1 < step.size(); ++k) {
-    scaled[k] = step[k] * scaling()->term_scale[k] / scale;
+  for (std::size_t k = 0; k + 1 < coefficients.size(); ++k) {
+    scaled[k] = coefficients[k] * scaling()->term_scale[k] / scale;
   }
-  scaled[terms().size()] = step.back() / scale;
-  learner_.shift(as_span(scaled), news);
+  scaled[terms().size()] = coefficients.back() / scale;
+  return scaled;
 }
 
 std::vector<Coefficient> DynamicsAxis::coefficients() const {
@@ -164,7 +170,20 @@ void DynamicsAxis::set_past_models(std::vector<StoredPastModel> models) {
   }
 }
 
+void DynamicsAxis::expect_vehicle(std::span<const double> coefficients) {
+  expected_.assign(coefficients.begin(), coefficients.end());
+  if (scaling() != nullptr) {
+    scale_found();
+  }
+}
+
 void DynamicsAxis::scale_found() {
+  if (!expected_.empty()) {
+    const TargetScaling& target = scaling()->target;
+    expected_.back() -= target.mean;
+    learner_.expect(as_span(scaled_weights(expected_)));
+    expected_.clear();
+  }
   for (const StoredPastModel& model : awaited_) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): it has been found
     learner_.learner().add_past(in_learner_units(model, *scaling(), terms(), svr().champion()));
@@ -189,6 +208,7 @@ RescaleStatus DynamicsAxis::rescale(const SampleMap& map) {
 
 void DynamicsAxis::visit(Archive& archive) {
   Scaled::visit(archive);
+  archive.list(expected_, terms().size() + 1, [&](double& one) { archive.number(one); });
   archive.part("learner", learner_);
   archive.part("interval", interval_);
   archive.part("disturbance", disturbance_);

@@ -76,6 +76,11 @@ class DynamicsAxis final : public Scaled {
   /// yet, enough room, and the same number of inputs. Allocates.
   void set_past_models(std::vector<StoredPastModel> models);
 
+  /// Begins with coefficients of the terms known beforehand, the last number of the term 1, once
+  /// the scale is known [target unit per unit of the term]. Requires that nothing has been learned
+  /// yet.
+  void expect_vehicle(std::span<const double> coefficients);
+
   /// Continues from a trained model at the time `t` [s] (Committee::resume_from). Requires that
   /// nothing has been learned yet, no given scaling, and the same inputs and terms. Allocates.
   void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t);
@@ -90,6 +95,7 @@ class DynamicsAxis final : public Scaled {
   const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
 
  private:
+  ShortVector<kMostTerms + 1> scaled_weights(std::span<const double> coefficients) const;
   void score(Decision& decision, double y, double t);
   Committee& learner() override { return learner_; }
   const Committee& learner() const override { return learner_; }
@@ -98,6 +104,7 @@ class DynamicsAxis final : public Scaled {
 
   Committee learner_;
   std::vector<StoredPastModel> awaited_;  ///< for the learner, until the scale is known
+  std::vector<double> expected_;          ///< coefficients, until the scale is known
   ConformalInterval interval_;            ///< in the target's own unit
   Disturbance disturbance_;
   ConformalInterval corrected_interval_;  ///< around predictions with the disturbance

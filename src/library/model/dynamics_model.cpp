@@ -2,6 +2,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <numeric>
@@ -24,7 +25,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "17";  // of the archive of all classes together
+constexpr const char* kStateVersion = "18";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -63,6 +64,24 @@ std::size_t most_places(const ModelSettings& settings) {
     most = std::max(most, axis.places());
   }
   return most;
+}
+
+// In the order of the terms, the last of the term 1.
+std::vector<double> coefficients_of(std::span<const Coefficient> known, const TermSet& terms) {
+  std::vector<std::string> texts = terms.texts();
+  texts.emplace_back("1");
+  std::vector<double> values(texts.size(), 0.0);
+  std::vector<bool> given(texts.size());
+  for (const Coefficient& one : known) {
+    const auto k = static_cast<std::size_t>(std::ranges::find(texts, one.term) - texts.begin());
+    require(k < texts.size(), one.term,
+            "not a term of this model, which has " + join_text(texts, ", "));
+    require(!given[k], one.term, "given twice");
+    require(std::isfinite(one.value), one.term, "has to be a finite coefficient");
+    values[k] = one.value;
+    given[k] = true;
+  }
+  return values;
 }
 
 void require_complete(std::span<const std::string> inputs, std::span<const std::string> targets,
@@ -354,6 +373,14 @@ std::vector<StoredPastModel> DynamicsModel::past_models(std::size_t axis) const 
 
 void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastModel> models) {
   parts_->axes[axis].set_past_models(std::move(models));
+}
+
+void DynamicsModel::set_nominal(std::size_t axis, std::span<const Coefficient> known) {
+  require(axis < parts_->axes.size(), "axis",
+          std::to_string(axis) + " given; there are " + std::to_string(parts_->axes.size()));
+  if (!known.empty()) {
+    parts_->axes[axis].expect_vehicle(coefficients_of(known, mechanisms(axis).terms()));
+  }
 }
 
 bool DynamicsModel::ready() const {

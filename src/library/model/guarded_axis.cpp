@@ -293,6 +293,7 @@ void GuardedAxis::begin_anew(double t) {
   trusted_ = 1 - trusted_;
   trusted() = arguments_.make();
   trusted().set_past_models(given_);
+  trusted().expect_vehicle(expected_);
   begun_with_ = {};
   const std::size_t first = first_alike(*candidate().scaling(), first_);
   const std::size_t warm =
@@ -420,6 +421,7 @@ void GuardedAxis::Evidence::visit(Archive& archive) {
 }
 
 void GuardedAxis::visit(Archive& archive) {
+  archive.list(expected_, arguments_.terms.size() + 1, [&](double& one) { archive.number(one); });
   archive.whole(trusted_, 0, 1);
   archive.part("trusted", trusted());
   archive.flag(probation_);

@@ -73,6 +73,12 @@ class GuardedAxis final : public OnlineRegressor {
     trusted().follow(gains, step, news);
   }
 
+  /// DynamicsAxis::expect_vehicle(). A further axis that begins anew begins with these, too.
+  void expect_vehicle(std::vector<double> coefficients) {
+    expected_ = std::move(coefficients);
+    trusted().expect_vehicle(expected_);
+  }
+
   /// DynamicsAxis::set_past_models().
   void set_past_models(std::vector<StoredPastModel> models) {
     given_ = models;
@@ -138,6 +144,7 @@ class GuardedAxis final : public OnlineRegressor {
 
   Arguments arguments_;
   std::array<DynamicsAxis, 2> axes_;
+  std::vector<double> expected_;        ///< coefficients for a new axis; empty: none
   std::vector<StoredPastModel> given_;  ///< for a new axis; own past models are in a wrong scale
   std::size_t trusted_ = 0;             ///< number of the trusted axis
   bool former_kept_ = false;            ///< the other axis was trusted until a candidate took over

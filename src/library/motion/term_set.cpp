@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -136,6 +137,12 @@ double TermSet::power(std::size_t k, std::size_t input) const {
     power = twice;
   }
   return power;
+}
+
+std::vector<std::string> TermSet::texts() const {
+  std::vector<std::string> list;
+  std::ranges::transform(terms_, std::back_inserter(list), &Expression::text);
+  return list;
 }
 
 void TermSet::evaluate(std::span<const double> x, std::span<double> out) const {

@@ -52,6 +52,7 @@ struct LiveArguments {
   std::string speed = "1";
   std::string out;
   std::string record;
+  std::string nominal;
   std::string block;
   std::string plotjuggler;
   std::string page;
@@ -114,6 +115,7 @@ live::Configuration configuration_of(const LiveArguments& options) {
   settings.page = options.demo && has_pages() ? kDemoPage : settings.page;
   settings.out = options.out.empty() ? settings.out : options.out;
   settings.record = options.record.empty() ? settings.record : options.record;
+  settings.nominal = options.nominal.empty() ? settings.nominal : options.nominal;
   settings.block = options.block.empty() ? settings.block : options.block;
   if (!options.plotjuggler.empty()) {
     live::parse_endpoint(options.plotjuggler, "--plotjuggler");
@@ -155,9 +157,10 @@ std::string fixed_difference(const live::Configuration& now, const live::Configu
     return field.empty() ? "live.out" : field;
   }
   const bool same_page = now.live.page == next.live.page && now.live.token == next.live.token;
-  return now.live.block != next.live.block ? "live.block"
-         : !same_page                      ? "live.page"
-         : !connects_alike(now, next)      ? "the connection"
+  return now.live.block != next.live.block       ? "live.block"
+         : now.live.nominal != next.live.nominal ? "live.nominal"
+         : !same_page                            ? "live.page"
+         : !connects_alike(now, next)            ? "the connection"
                                       : differing(now.settings.values(), next.settings.values());
 }
 
@@ -353,6 +356,9 @@ CLI::Option* add_demo(CLI::App& command, LiveArguments& options) {
 void add_outputs(CLI::App* command, LiveArguments& options) {
   add_folder(command, "--record", options.record,
              "folder for a recording of all that comes (MCAP), over live.record");
+  add_file(command, "--nominal", options.nominal,
+           "model.json of an earlier drive or of a like vehicle, with which a new model begins, "
+           "over live.nominal");
   add_file(command, "--block", options.block,
            "block of `kelpie export --live` to renew with every learned row, over live.block");
   command->add_option("--plotjuggler", options.plotjuggler,

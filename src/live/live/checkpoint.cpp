@@ -5,9 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "format/model_json.hpp"
 #include "format/run_checkpoint.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/kelpie.h"
+#include "model/dynamics_axis.hpp"
+#include "study/nominal.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -105,7 +108,13 @@ DynamicsModel model_to_begin_with(const Configuration& configuration,
                          configuration.settings);
   };
   if (!saved) {
-    return fresh();
+    DynamicsModel model = fresh();
+    if (!configuration.live.nominal.empty()) {
+      study::give(study::nominal_of(format::read_model(configuration.live.nominal),
+                                    configuration.plan.targets, model.mechanisms(0).terms()),
+                  model);
+    }
+    return model;
   }
   try {
     return DynamicsModel::resume(fresh(), saved->model);

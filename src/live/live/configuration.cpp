@@ -92,7 +92,7 @@ void read_validity(const file::TomlNode& table, std::map<std::string, double>& v
 
 LiveSettings read_live(const file::TomlNode& live) {
   live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "page", "token",
-              "status", "block", "dds", "mavlink", "valid"});
+              "status", "nominal", "block", "dds", "mavlink", "valid"});
   LiveSettings settings;
   const auto text = [&](const char* key, std::string& value) {
     if (live.has(key)) {
@@ -106,6 +106,7 @@ LiveSettings read_live(const file::TomlNode& live) {
   };
   text("out", settings.out);
   text("record", settings.record);
+  text("nominal", settings.nominal);
   text("block", settings.block);
   seconds("checkpoint", settings.checkpoint_s);
   seconds("status", settings.status_s);

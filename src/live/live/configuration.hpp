@@ -40,6 +40,7 @@ struct LiveSettings {
   std::string align = "auto";    ///< alignment: auto, none, or a lag [s]
   Frozen frozen = Frozen::skip;  ///< treatment of stuck velocities
   std::string record{};          ///< folder for recordings (MCAP); empty: none
+  std::string nominal{};         ///< model.json known beforehand; empty: nothing is known
   std::string block{};           ///< file of `kelpie export --live` to renew; empty: none
   std::string plotjuggler{};     ///< parse_endpoint; empty: none
   std::string page{};            ///< parse_endpoint, to listen on; empty: no page

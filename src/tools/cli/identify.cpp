@@ -88,17 +88,6 @@ study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& ba
   return wish;
 }
 
-// Without an option: of a log in the plane, as kelpie simulates them, FLU; of six axes, as
-// ArduSub's messages are read, FRD.
-Frame body_frame(const std::string& name, bool six_axes) {
-  if (name.empty()) {
-    return six_axes ? Frame::frd : Frame::flu;
-  }
-  const Frame frame = frame_from(name);
-  require(frame == Frame::flu || frame == Frame::frd, "--frame", "has to be FLU or FRD");
-  return frame;
-}
-
 std::vector<std::string> all_files() {
   std::vector<std::string> names{kYaml, kPage, kCertificate};
   for (const EngineFile& one : kEngineFiles) {
@@ -324,11 +313,7 @@ void add_identify(CLI::App& app) {
       "its added mass in surge, give the scale");
   command->add_option("--volts", options->volts,
                       "column with the supply of the thrusters in V, for six axes");
-  command
-      ->add_option("--frame", options->frame,
-                   "of the log: sway to port (FLU) or starboard (FRD); without the option FLU in "
-                   "the plane, FRD on six axes")
-      ->type_name("{FLU,FRD}");
+  add_frame_option(*command, options->frame);
   add_list(command, "--for", options->engines,
            "simulators to write for, separated by commas; else all: kelpie, gazebo, gazebo_plugin, "
            "uuv_simulator, stonefish, blue, orca4, mss, python_vehicle_simulator, ardupilot");

@@ -27,10 +27,15 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "model/six_axis_fit.hpp"
 #include "model/snapshot.hpp"
+#include "motion/states.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
 #include "report/verdict.hpp"
+#include "study/nominal.hpp"
+#include "study/six_axes.hpp"
+#include "vehicle/scenario_file.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -41,6 +46,8 @@ constexpr const char* kDraftName = "log.toml";
 
 struct LearnArguments : PlanOptions {
   std::string from;
+  Words nominal;
+  std::string frame;
   std::string scales = "first";
   std::size_t validate_every = 0;
   std::size_t checkpoint_every = 0;
@@ -73,7 +80,38 @@ void require_one_start(const LearnArguments& options) {
     throw InputError("--memory",
                      "searches the past models, --from names the model; give one of the two");
   }
+  if (!options.from.empty() && !options.nominal.empty()) {
+    throw InputError("--nominal",
+                     "is the start of a new model, --from goes on with an earlier "
+                     "model; give one of the two");
+  }
   refuse_to_replace_start(options);
+}
+
+// What is known of the vehicle before the log, of one file.
+study::Nominal nominal_of(const std::string& file, const LearnArguments& options,
+                          const study::LearnPlan& plan) {
+  const log::Dataset& data = plan.data;
+  const SharedSettings& settings = plan.settings.shared;
+  const TermSet terms = TermSet::from(settings.terms, data.input_names, data.target_names.size());
+  if (fs::path(file).extension() != ".toml") {
+    return study::nominal_of(format::read_model(file), data.target_names, terms);
+  }
+  const std::size_t states =
+      find_states(settings.states, data.input_names, data.target_names.size()).size();
+  const double neutral = plan.alignment.alignment.actuators.empty() ? study::kRestUs : 0.0;
+  return study::nominal_of(vehicle::read_vehicle(file), data, settings.states, terms,
+                           body_frame(options.frame, states == kSixAxes), neutral);
+}
+
+// Of all files together.
+void give_nominal(const LearnArguments& options, const study::LearnPlan& plan,
+                  DynamicsModel& model) {
+  std::vector<study::Nominal> all;
+  for (const std::string& file : options.nominal) {
+    all.push_back(nominal_of(file, options, plan));
+  }
+  study::give(study::mean_of(all), model);
 }
 
 std::vector<AxisScaling> saved_scales(const std::string& file, const log::Dataset& data) {
@@ -146,6 +184,9 @@ DynamicsModel first_model(const LearnArguments& options, const format::Origin* f
   DynamicsModel model = from == nullptr ? study::make_model(plan)
                         : resumes       ? from->fresh(plan.settings)
                                         : from->model(plan.settings, plan.data.times_s.front());
+  if (!options.nominal.empty()) {
+    give_nominal(options, plan, model);
+  }
   if (!options.memory.empty() && fs::exists(options.memory)) {
     format::read_memory(options.memory).give_to(model, plan.data, plan.settings, options.memory);
   }
@@ -284,12 +325,14 @@ void learn(const LearnArguments& options) {
   const format::Origin* const from = origin ? &*origin : nullptr;
   std::vector<std::string> read = options.files();
   read.insert(read.end(), {options.scales, options.from});
+  read.insert(read.end(), options.nominal.begin(), options.nominal.end());
   if (!options.memory.empty()) {
     check_output("--memory", options.memory, read);
   }
   PlannedLog log = plan_log(options, from);
   study::LearnPlan& plan = log.plan;
   plan.scales = options.scales;
+  plan.nominal = join_text(options.nominal, ", ");
   print_notes(plan.settings, log.config, options.set, options.scales != "first");
   const file::OutFolder folder = take_learn_folder(options, read, !log.draft.empty());
   const format::RunIdentity identity = format::identify_run(
@@ -301,6 +344,7 @@ void learn(const LearnArguments& options) {
        .align = options.align,
        .alignment = plan.alignment.alignment,
        .from = options.from,
+       .nominal = plan.nominal,
        .validate_every = options.validate_every});
   const format::RunState earlier =
       options.resume ? earlier_run(options.out, identity) : format::RunState{};
@@ -337,6 +381,10 @@ void add_learn(CLI::App& app) {
   add_file(command, "--from", options->from,
            "go on with the model of an earlier run: its model.json or checkpoint.kelpie; "
            "columns, settings, scale and shift are as there");
+  add_files(command, "--nominal", options->nominal,
+            "what is known of the vehicle beforehand: a vehicle file (.toml), or model.json of "
+            "earlier drives or of like vehicles; of several files the mean");
+  add_frame_option(*command, options->frame);
   add_split_option(
       *command, options->split,
       "held-out rows: auto (blocks, or pieces where the log is short), blocks (every fifth "

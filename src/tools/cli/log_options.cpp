@@ -250,6 +250,23 @@ void add_since_option(CLI::App& command, std::optional<double>& since_s) {
       "vehicle");
 }
 
+void add_frame_option(CLI::App& command, std::string& frame) {
+  command
+      .add_option("--frame", frame,
+                  "of the log: sway to port (FLU) or starboard (FRD); without the option FLU in "
+                  "the plane, FRD on six axes")
+      ->type_name("{FLU,FRD}");
+}
+
+Frame body_frame(const std::string& name, bool six_axes) {
+  if (name.empty()) {
+    return six_axes ? Frame::frd : Frame::flu;
+  }
+  const Frame frame = frame_from(name);
+  require(frame == Frame::flu || frame == Frame::frd, "--frame", "has to be FLU or FRD");
+  return frame;
+}
+
 void add_align_option(CLI::App& command, std::string& align) {
   command
       .add_option("--align", align,

@@ -13,6 +13,7 @@
 #include "format/learned_logs.hpp"
 #include "format/origin.hpp"
 #include "format/settings_file.hpp"
+#include "kelpie/motion/frame.hpp"
 #include "log/read_log.hpp"
 #include "study/learn.hpp"
 
@@ -96,6 +97,13 @@ void add_since_option(CLI::App& command, std::optional<double>& since_s);
 
 /// The option --align of commands (study::choose_alignment).
 void add_align_option(CLI::App& command, std::string& align);
+
+/// The option --frame: body axes of the log where a vehicle file is read beside.
+void add_frame_option(CLI::App& command, std::string& frame);
+
+/// The frame of --frame; without the option FLU of a log in the plane, as kelpie simulates such
+/// logs, and FRD of six axes, as ArduSub's messages are read. Throws InputError on another name.
+Frame body_frame(const std::string& name, bool six_axes);
 
 /// The option --current of commands that learn: auto or none.
 void add_current_option(CLI::App& command, std::string& current);

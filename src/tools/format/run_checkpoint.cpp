@@ -90,6 +90,7 @@ RunIdentity identify_run(const log::Dataset& data, const study::Split& split,
                   {"seed", std::to_string(options.seed)},
                   {"scales", options.scales},
                   {"from", options.from.empty() ? "the start" : options.from},
+                  {"nominal", options.nominal.empty() ? "nothing" : options.nominal},
                   {"validate_every", std::to_string(options.validate_every)}};
   return identity;
 }

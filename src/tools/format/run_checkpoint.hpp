@@ -40,6 +40,7 @@ struct RunOptions {
   std::string align;      ///< as the user gave it
   Alignment alignment{};  ///< the resulting alignment
   std::string from{};     ///< file of the earlier model; empty: a new model
+  std::string nominal{};  ///< files of what was known beforehand; empty: nothing
   std::size_t validate_every = 0;
 };
 

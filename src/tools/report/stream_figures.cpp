@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <ranges>
 #include <utility>
 #include <vector>
@@ -112,9 +114,10 @@ chart::Extent first_window(const study::StreamResult& result, chart::Extent all)
   const std::vector<double>& times = steps->time_s;
   double most = -1.0;
   double best = all.high - width;
-  for (double from = 0.5 * (all.low + all.high); from + width < all.high; from += 0.5 * width) {
-    const auto begin = std::ranges::lower_bound(times, from);
-    const auto end = std::ranges::lower_bound(times, from + width);
+  auto begin = std::ranges::lower_bound(times, std::midpoint(all.low, all.high));
+  while (begin != times.end() && *begin + width < all.high) {
+    const double from = *begin;
+    const auto end = std::lower_bound(begin, times.end(), from + width);
     // Held-out rows leave holes: a window half empty tells less, however lively.
     const double motion = static_cast<double>(end - begin) *
                           motion_in(*steps, usual, static_cast<std::size_t>(begin - times.begin()),
@@ -123,6 +126,7 @@ chart::Extent first_window(const study::StreamResult& result, chart::Extent all)
       most = motion;
       best = from;
     }
+    begin = std::lower_bound(std::next(begin), times.end(), from + 0.5 * width);
   }
   return {best, best + width};
 }

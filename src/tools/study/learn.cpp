@@ -110,6 +110,7 @@ StreamResult learn(const LearnPlan& plan, DynamicsModel& model, const StreamOpti
 
 void describe(const LearnPlan& plan, StreamResult& result) {
   result.from = plan.from;
+  result.nominal = plan.nominal;
   result.scales = plan.scales_text();
   result.seed = plan.seed;
   result.commands = plan.commands;

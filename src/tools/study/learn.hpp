@@ -26,7 +26,8 @@ struct LearnPlan {
   CurrentResult current{};          ///< with the reason; empty `why`: nobody asked
   std::vector<LagInterval> lags{};  ///< of the actuators, where asked for
   std::uint64_t seed = 1;           ///< of a random split
-  std::string from{};  ///< file of the model that the run continues; empty: a new model
+  std::string from{};     ///< file of the model that the run continues; empty: a new model
+  std::string nominal{};  ///< files of what is known beforehand, in words; empty: nothing
   /// Source of the scaling: "first" (samples), "train" (all training rows), or the name of the file
   /// that `given_scales` were read from.
   std::string scales = "first";

@@ -115,6 +115,7 @@ struct StreamResult {
   std::vector<std::string> commands{};  ///< the inputs that are commands; empty: not known
   std::string split;                    ///< label, e.g. "blocks of 400 rows, every 5th held out"
   std::string from;                     ///< file of the continued model; empty: a new model
+  std::string nominal{};                ///< files of what was known beforehand; empty: nothing
   std::string scales;                   ///< source of the scaling, e.g. "first 200 samples"
   AlignmentResult alignment;            ///< of commands; empty `why`: not requested
   CurrentResult current;                ///< of the water; empty `why`: not looked for

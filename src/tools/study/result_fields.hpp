@@ -176,6 +176,7 @@ inline constexpr auto kFields<StreamResult> = std::tuple{
     shown("split", &StreamResult::split),
     shown("seed", &StreamResult::seed),
     shown("from", [](const StreamResult& result) { return unless_empty(result.from); }),
+    shown("nominal", [](const StreamResult& result) { return unless_empty(result.nominal); }),
     shown("scales", &StreamResult::scales),
     shown("alignment", &StreamResult::alignment),
     shown("current", &StreamResult::current),

@@ -20,22 +20,6 @@
 namespace kelpie::study {
 namespace {
 
-// The direction of gravity in the body, FRD (Fossen 2011, eq. 4.6).
-std::array<double, 3> down_of(const Attitude& attitude, std::span<const double> inputs,
-                              Frame frame) {
-  const double flip = frame == Frame::flu ? -1.0 : 1.0;  // of pitch, and of a quaternion's y and z
-  if (attitude.quaternion) {
-    const auto [x, y, z, w] = *attitude.quaternion;
-    const Triple down =
-        in_body(Triple{0.0, 0.0, 1.0},
-                std::array{inputs[w], inputs[x], flip * inputs[y], flip * inputs[z]});
-    return down;
-  }
-  const double roll = attitude.roll_unit * inputs[*attitude.roll];
-  const double pitch = flip * attitude.pitch_unit * inputs[*attitude.pitch];
-  return {-std::sin(pitch), std::cos(pitch) * std::sin(roll), std::cos(pitch) * std::cos(roll)};
-}
-
 std::vector<PlacedThruster> placed_thrusters(const vehicle::VehicleParameters& vehicle) {
   std::vector<PlacedThruster> thrusters;
   for (const vehicle::Thruster& thruster : vehicle.thrusters) {
@@ -46,20 +30,6 @@ std::vector<PlacedThruster> placed_thrusters(const vehicle::VehicleParameters& v
                          .direction = {d.x(), d.y(), d.z()}});
   }
   return thrusters;
-}
-
-double command_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
-                     double command, double neutral) {
-  constexpr double kPulsePerShareUs = 400.0;  // ArduSub: 1100 to 1900 µs
-  switch (vehicle.command_unit) {
-    case vehicle::CommandUnit::pwm:
-      return (command - neutral) / kPulsePerShareUs;
-    case vehicle::CommandUnit::share:
-      return command;
-    case vehicle::CommandUnit::speed:
-      break;
-  }
-  return command / vehicle.thrusters[thruster].max_speed_rps;
 }
 
 std::string missing_velocity(const log::Dataset& data, const std::vector<std::size_t>& states,
@@ -117,6 +87,35 @@ void judge_six_axes(const log::Dataset& data, const std::vector<std::size_t>& ro
 }
 
 }  // namespace
+
+std::array<double, 3> down_of(const Attitude& attitude, std::span<const double> inputs,
+                              Frame frame) {
+  const double flip = frame == Frame::flu ? -1.0 : 1.0;  // of pitch, and of a quaternion's y and z
+  if (attitude.quaternion) {
+    const auto [x, y, z, w] = *attitude.quaternion;
+    const Triple down =
+        in_body(Triple{0.0, 0.0, 1.0},
+                std::array{inputs[w], inputs[x], flip * inputs[y], flip * inputs[z]});
+    return down;
+  }
+  const double roll = attitude.roll ? attitude.roll_unit * inputs[*attitude.roll] : 0.0;
+  const double pitch = attitude.pitch ? flip * attitude.pitch_unit * inputs[*attitude.pitch] : 0.0;
+  return {-std::sin(pitch), std::cos(pitch) * std::sin(roll), std::cos(pitch) * std::cos(roll)};
+}
+
+double command_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
+                     double command, double neutral) {
+  constexpr double kPulsePerShareUs = 400.0;  // ArduSub: 1100 to 1900 µs
+  switch (vehicle.command_unit) {
+    case vehicle::CommandUnit::pwm:
+      return (command - neutral) / kPulsePerShareUs;
+    case vehicle::CommandUnit::share:
+      return command;
+    case vehicle::CommandUnit::speed:
+      break;
+  }
+  return command / vehicle.thrusters[thruster].max_speed_rps;
+}
 
 std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const std::string& states,
                                                const vehicle::VehicleParameters& vehicle,

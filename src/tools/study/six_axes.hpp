@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,16 @@ SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_
 /// Rows of a simulated log of six axes.
 SixAxisRows six_axis_rows(const std::vector<vehicle::SixAxisRow>& log,
                           const vehicle::VehicleParameters& vehicle);
+
+/// The direction of gravity in the body, FRD (Fossen 2011, eq. 4.6), at a row of inputs with an
+/// attitude in the axes `frame`; straight down without an attitude.
+std::array<double, 3> down_of(const Attitude& attitude, std::span<const double> inputs,
+                              Frame frame);
+
+/// A logged command of a thruster as a share of full, by the unit of the vehicle file. `neutral`:
+/// as in six_axis_rows().
+double command_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
+                     double command, double neutral);
 
 /// The parameters of a vehicle file in the order of SixAxisPlace: what should be identified.
 std::vector<double> six_axis_truth(const vehicle::VehicleParameters& vehicle);

@@ -36,6 +36,17 @@ TEST_F(LiveCommand, ATableEndsWithTheModelThatLearnGivesAndNeedsNoMore) {
   }
 }
 
+TEST_F(LiveCommand, ANewModelBeginsWithAnEarlierAsInLearn) {
+  write("dive.csv", log_of(600));
+  const std::string same = " --nominal first/model.json --out ";
+  succeeded(run("learn dive.csv --split none --out first"));
+  succeeded(run("learn dive.csv --split none" + same + "of_learn"));
+  succeeded(run("live --replay dive.csv --speed max" + same + "out"));
+  EXPECT_EQ(model_of("out"), model_of("of_learn"));
+  EXPECT_NE(model_of("out"), model_of("first"));
+  expect_refused("--replay dive.csv --fresh --nominal nothing.json --out out", "nothing.json");
+}
+
 TEST_F(LiveCommand, ColumnsOfATableMayHaveAnyName) {
   write("dive.csv", log_of(600, "t,u,thruster 1 [rpm],udot"));
   succeeded(run("live --replay dive.csv --speed max --out out"));

@@ -47,6 +47,15 @@ TEST_F(Learn, WritesResultReportAndModel) {
   EXPECT_NE(content("out/report.html").find("figure class=\"chart\""), std::string::npos);
 }
 
+TEST_F(Learn, AStampFromAnotherAgeDoesNotHoldUpThePage) {
+  std::string log = little_log(600);
+  const std::size_t second = log.find('\n') + 1;
+  log.replace(second, log.find(',', second) - second, "-1e308");
+  write("log.csv", log);
+  testing::succeeded(run("learn log.csv --set buffer=50 --out out"));
+  EXPECT_TRUE(exists("out/report.html"));
+}
+
 TEST_F(Learn, AnswersWithAVerdictOrWithNothing) {
   const Outcome verdict = testing::succeeded(run("learn log.csv --out out"));
   EXPECT_EQ(verdict.out.find("Learned "), 0U) << verdict.out;

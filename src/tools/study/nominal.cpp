@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study/nominal.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "core/eigen.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "learner/triangular_fit.hpp"
+#include "model/snapshot.hpp"
+#include "motion/signal_names.hpp"
+#include "motion/states.hpp"
+#include "study/six_axes.hpp"
+#include "svr/function_mix.hpp"
+#include "vehicle/dynamics.hpp"
+
+namespace kelpie::study {
+namespace {
+
+constexpr const char* kConstant = "1";
+constexpr int kPlaces = 4000;       // many for 122 terms, and no time to speak of
+constexpr double kNoPrior = 1e-12;  // the vehicle's equation has no noise
+
+// The body axis of each target's velocity; none for a target of another kind.
+std::vector<std::optional<std::size_t>> axes_of_targets(const log::Dataset& data,
+                                                        const std::string& states) {
+  std::vector<std::optional<std::size_t>> axes(data.target_names.size());
+  const std::vector<std::size_t> inputs =
+      find_states(states, data.input_names, data.target_names.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    axes[i] = velocity_axis(data.input_names[inputs[i]]);
+  }
+  return axes;
+}
+
+double sign_in(Frame frame, std::size_t axis) {
+  return frame == Frame::flu && axis != 0 && axis != 3 ? -1.0 : 1.0;
+}
+
+// The accelerations of a vehicle file on the inputs of a log.
+class VehicleOnInputs {
+ public:
+  VehicleOnInputs(const vehicle::VehicleParameters& vehicle, const log::Dataset& data, Frame frame,
+                  double neutral)
+      : vehicle_(vehicle),
+        dynamics_(vehicle::make_plant(vehicle, vehicle::Configuration{})),
+        attitude_(find_attitude(data.input_names)),
+        frame_(frame),
+        neutral_(neutral) {
+    for (std::size_t i = 0; i < data.input_names.size(); ++i) {
+      axes_.push_back(velocity_axis(data.input_names[i]));
+    }
+    std::vector<std::string> names;
+    for (const vehicle::Thruster& thruster : vehicle.thrusters) {
+      const auto found = std::ranges::find(data.input_names, thruster.name);
+      names.push_back(thruster.name);
+      inputs_.push_back(static_cast<std::size_t>(found - data.input_names.begin()));
+    }
+    require(std::ranges::any_of(inputs_, [&](std::size_t i) { return i < axes_.size(); }),
+            "--nominal",
+            "the vehicle's thrusters are " + join_text(names, ", ") +
+                "; none is among the inputs " + join_text(data.input_names, ", "));
+  }
+
+  const Attitude& attitude() const { return attitude_; }
+
+  // By body axis, in the frame of the log.
+  vehicle::Vector6 acceleration(std::span<const double> x) const {
+    vehicle::Vector6 velocity = vehicle::Vector6::Zero();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (axes_[i]) {
+        velocity(static_cast<Eigen::Index>(*axes_[i])) = sign_in(frame_, *axes_[i]) * x[i];
+      }
+    }
+    const auto [forward, right, down] = down_of(attitude_, x, frame_);
+    const auto attitude = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(forward, right, down),
+                                                             Eigen::Vector3d::UnitZ());
+    vehicle::Vector6 result = dynamics_.acceleration(attitude, velocity, rotor_speeds(x));
+    for (Eigen::Index axis = 0; axis < result.size(); ++axis) {
+      result(axis) *= sign_in(frame_, static_cast<std::size_t>(axis));
+    }
+    return result;
+  }
+
+ private:
+  vehicle::RotorSpeeds rotor_speeds(std::span<const double> x) const {
+    vehicle::RotorSpeeds speeds =
+        vehicle::RotorSpeeds::Zero(static_cast<Eigen::Index>(inputs_.size()));
+    for (std::size_t k = 0; k < inputs_.size(); ++k) {
+      if (inputs_[k] < x.size()) {
+        const vehicle::Thruster& thruster = vehicle_.thrusters[k];
+        const double command =
+            thruster.max_speed_rps * command_share(vehicle_, k, x[inputs_[k]], neutral_);
+        speeds(static_cast<Eigen::Index>(k)) = vehicle::speed_for_command(thruster, command);
+      }
+    }
+    return speeds;
+  }
+
+  const vehicle::VehicleParameters& vehicle_;
+  vehicle::Dynamics dynamics_;
+  Attitude attitude_;
+  Frame frame_;
+  double neutral_;
+  std::vector<std::optional<std::size_t>> axes_;  // of each input
+  std::vector<std::size_t> inputs_;               // of each thruster; beyond the last: none
+};
+
+const SvrFunction& line_of(const Snapshot& axis) {
+  const auto found = std::ranges::find(axis.function.members, "line", &FunctionMix::Member::name);
+  require(found != axis.function.members.end(), "--nominal",
+          "the model has no member 'line', as a model of learner = svr");
+  return found->function;
+}
+
+std::vector<Coefficient> coefficients_of(const TrainedModel& model, const Snapshot& axis,
+                                         const TermSet& terms) {
+  const SvrFunction& line = line_of(axis);
+  const AxisScaling& scaling = axis.scaling;
+  const std::vector<std::string> known = terms.texts();
+  std::vector<Coefficient> list{
+      {kConstant, scaling.target.scale * line.bias() + scaling.target.mean}};
+  for (std::size_t k = 0; k < model.terms.size(); ++k) {
+    if (std::ranges::find(known, model.terms.text(k)) != known.end()) {
+      list.push_back({model.terms.text(k),
+                      scaling.target.scale * line.term_weights()[k] / scaling.term_scale[k]});
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+Nominal nominal_of(const TrainedModel& model, std::span<const std::string> targets,
+                   const TermSet& terms) {
+  Nominal nominal(targets.size());
+  const std::vector<std::string> names = model.target_names();
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const auto found = std::ranges::find(names, targets[i]);
+    if (found != names.end()) {
+      const auto axis = static_cast<std::size_t>(found - names.begin());
+      nominal[i] = coefficients_of(model, model.axes[axis], terms);
+    }
+  }
+  require(std::ranges::any_of(nominal, [](const auto& one) { return !one.empty(); }), "--nominal",
+          "the model has the targets " + join_text(names, ", ") + "; the log has " +
+              join_text(targets, ", "));
+  return nominal;
+}
+
+Nominal nominal_of(const vehicle::VehicleParameters& vehicle, const log::Dataset& data,
+                   const std::string& states, const TermSet& terms, Frame frame, double neutral) {
+  const VehicleOnInputs nominal(vehicle, data, frame, neutral);
+  const std::vector<std::optional<std::size_t>> axes = axes_of_targets(data, states);
+  TriangularFit fit(terms.size() + 1, kNoPrior, axes.size());
+  RandomStream random(1, "nominal");
+  std::vector<double> x(data.input_names.size());
+  std::vector<double> phi(terms.size() + 1, 1.0);
+  std::vector<double> y(axes.size());
+  for (int place = 0; place < kPlaces; ++place) {
+    const std::size_t attitude_row = random.below(data.rows());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::size_t row =
+          nominal.attitude().contains(i) ? attitude_row : random.below(data.rows());
+      x[i] = data.input(row)[i];
+    }
+    terms.evaluate(x, std::span(phi).first(terms.size()));
+    const vehicle::Vector6 all = nominal.acceleration(x);
+    std::ranges::transform(axes, y.begin(), [&](const std::optional<std::size_t>& axis) {
+      return axis ? all(static_cast<Eigen::Index>(*axis)) : 0.0;
+    });
+    fit.add(phi, y);
+  }
+  Nominal result(axes.size());
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    for (std::size_t k = 0; axes[i] && k <= terms.size(); ++k) {
+      result[i].push_back({k < terms.size() ? terms.text(k) : kConstant, fit.theta(i)[k]});
+    }
+  }
+  return result;
+}
+
+void give(const Nominal& nominal, DynamicsModel& model) {
+  for (std::size_t axis = 0; axis < nominal.size(); ++axis) {
+    model.set_nominal(axis, nominal[axis]);
+  }
+}
+
+Nominal mean_of(std::span<const Nominal> several) {
+  Nominal mean(several.front().size());
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    std::map<std::string, double> sums;
+    double count = 0.0;
+    for (const Nominal& one : several) {
+      count += one[i].empty() ? 0.0 : 1.0;
+      for (const Coefficient& coefficient : one[i]) {
+        sums[coefficient.term] += coefficient.value;
+      }
+    }
+    for (const auto& [term, sum] : sums) {
+      mean[i].push_back({term, sum / count});
+    }
+  }
+  return mean;
+}
+
+}  // namespace kelpie::study
