@@ -59,6 +59,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       starts_(kMostStarts),
       changed_start_(kMostStarts),
       gained_(commands.size()),
+      believed_s_(kBefore),
       row_s_(kBefore),
       begun_s_(kBefore),
       told_(columns() * axes()),
@@ -71,6 +72,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       gain_(causes()),
       mixed_(causes()),
       told_gains_(commands.size(), 1.0),
+      usual_effect_(commands.size()),
       square_(commands.size()) {
   for (const std::size_t command : commands) {
     gains_.push_back({.input = command});
@@ -181,10 +183,23 @@ void ChangeMonitor::learn(std::span<const double> y) {
       correlation_[a].add(std::clamp(error, -most, most));
     }
   }
+  for (std::size_t a = 0; errors_known() && a < axes(); ++a) {
+    effects(fit_.theta(a), a);
+    for (std::size_t c = 0; c < commands_; ++c) {
+      usual_effect_[c].add(effect_[c] - square_[c], square_[c],
+                           weight / (scatter_[a].value() * scatter_[a].value()));
+    }
+  }
   const double root = std::sqrt(weight);
   as_vector(phi_) *= root;
   std::ranges::transform(y, weighted_y_.begin(), [root](double value) { return root * value; });
   fit_.add(phi_, weighted_y_);
+}
+
+bool ChangeMonitor::errors_known() const {
+  return std::ranges::all_of(scatter_, [](const RobustScale& scatter) {
+    return std::isfinite(scatter.value()) && scatter.value() > 0.0;
+  });
 }
 
 // Every second start lives twice as long as the others, every fourth four times, and so on: starts
@@ -193,32 +208,38 @@ void ChangeMonitor::learn(std::span<const double> y) {
 void ChangeMonitor::begin_start(double t) {
   const auto free = std::ranges::find(starts_, false, &Start::alive);
   if (t - begun_s_ < kChange.start_every_s || free == starts_.end() || !known() ||
-      !std::ranges::all_of(scatter_, [](const RobustScale& scatter) {
-        return std::isfinite(scatter.value()) && scatter.value() > 0.0;
-      })) {
+      !errors_known()) {
     return;
   }
   begun_s_ = t;
   ++begun_;
   const int doublings = std::min(std::countr_zero(begun_), kChange.doublings);
-  free->alive = true;
-  free->begun_s = t;
-  free->life_s = kChange.life_s * static_cast<double>(1 << doublings);
-  free->evidence = 0.0;
-  free->samples = 0.0;
-  free->peak = 0.0;
-  free->likelihood = 0.0;
+  free->begin(t, kChange.life_s * static_cast<double>(1 << doublings));
   std::ranges::copy(fit_.theta(), free->theta.begin());
-  std::ranges::fill(free->size, 0.0);
-  std::ranges::fill(free->covariance, 0.0);
   for (std::size_t c = 0; c < causes(); ++c) {
     free->covariance[c * (causes() + 1)] = kChange.deviation * kChange.deviation;
   }
-  std::ranges::fill(free->lone, kUnknown);
-  std::ranges::fill(free->effect, Effect{});
+  expect_usual_errors(*free);
+}
+
+void ChangeMonitor::Start::begin(double t, double life) {
+  alive = true;
+  begun_s = t;
+  life_s = life;
+  evidence = 0.0;
+  samples = 0.0;
+  peak = 0.0;
+  likelihood = 0.0;
+  std::ranges::fill(size, 0.0);
+  std::ranges::fill(covariance, 0.0);
+  std::ranges::fill(lone, kUnknown);
+  std::ranges::fill(effect, Effect{});
+}
+
+void ChangeMonitor::expect_usual_errors(Start& start) const {
   for (std::size_t a = 0; a < axes(); ++a) {
-    free->scatter[a] = scatter_[a].value();
-    free->tau[a] = correlation_[a].rows_per_sample();
+    start.scatter[a] = scatter_[a].value();
+    start.tau[a] = correlation_[a].rows_per_sample();
   }
 }
 
@@ -238,9 +259,8 @@ void ChangeMonitor::end_old_starts(double t) {
   }
 }
 
-// Θ₀ᵀφ of an axis, and the change of this value per unit of each size.
-void ChangeMonitor::effects(const Start& start, std::size_t axis) {
-  const std::span<const double> theta = std::span(start.theta).subspan(axis * columns(), columns());
+// θᵀφ of an axis, and the change of this value per unit of each size.
+void ChangeMonitor::effects(std::span<const double> theta, std::size_t axis) {
   std::ranges::fill(effect_, 0.0);
   std::ranges::fill(square_, 0.0);
   value_ = theta.back();
@@ -292,7 +312,7 @@ void ChangeMonitor::observe(Start& start, std::span<const double> y, bool agains
   auto gain = as_vector(gain_);
   const auto effect = as_vector(std::span<const double>(effect_));
   for (std::size_t a = 0; a < axes(); ++a) {
-    effects(start, a);
+    effects(std::span(start.theta).subspan(a * columns(), columns()), a);
     const double noise = start.scatter[a] * start.scatter[a] * (1.0 + leverage_);
     gain.noalias() = covariance * effect;
     const double unknown = effect.dot(gain);
@@ -350,6 +370,51 @@ ChangeMonitor::Event ChangeMonitor::believe(Start& start, double t) {
   gained_ = clear_command(start).value_or(commands_);
   move_to(&start);
   return Event::changed;
+}
+
+// The last start before a time, whose coefficients no later row has touched; else a new one.
+ChangeMonitor::Start& ChangeMonitor::start_before(double since_s) {
+  Start* last = nullptr;
+  for (Start& start : starts_) {
+    if (start.alive && start.begun_s <= since_s &&
+        (last == nullptr || start.begun_s > last->begun_s)) {
+      last = &start;
+    }
+  }
+  if (last == nullptr) {
+    last = &starts_.front();
+    std::ranges::copy(fit_.theta(), last->theta.begin());
+  }
+  return *last;
+}
+
+// The number of a cause; none of a kind that is not followed.
+std::optional<std::size_t> ChangeMonitor::place_of(const Cause& cause) const {
+  if (cause.kind == CauseKind::drag && cause.place < axes()) {
+    return commands_ + cause.place;
+  }
+  const auto found = std::ranges::find(gains_, cause.place, &CommandGain::input);
+  const auto command = static_cast<std::size_t>(found - gains_.begin());
+  const bool follows =
+      cause.kind == CauseKind::thruster && found != gains_.end() && scales_[command];
+  return follows ? std::optional(command) : std::nullopt;
+}
+
+ChangeMonitor::Event ChangeMonitor::believe_cause(const Cause& cause, double since_s) {
+  const std::optional<std::size_t> place = place_of(cause);
+  if (!place || changed_start_ < kMostStarts || !errors_known() || since_s <= believed_s_) {
+    return Event::none;
+  }
+  const double size = cause.size - 1.0;
+  const double variance = kChange.named_deviation * kChange.named_deviation;
+  Start& start = start_before(since_s);
+  start.begin(since_s, kChange.life_s);
+  expect_usual_errors(start);
+  start.size[*place] = size;
+  start.covariance[*place * (causes() + 1)] = variance;
+  start.lone[*place] = {.size = size, .variance = variance, .likelihood = kChange.enough};
+  start.effect = usual_effect_;
+  return believe(start, row_s_);
 }
 
 // One cause that explains nearly all that all causes together explain: errors of the equation of
@@ -497,7 +562,14 @@ void ChangeMonitor::restart() {
   std::ranges::for_each(scatter_, &RobustScale::clear);
   std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });
   changed_start_ = kMostStarts;
+  believed_s_ = row_s_;
   samples_ = 0.0;
+}
+
+void ChangeMonitor::Effect::visit(Archive& archive) {
+  for (double* const number : {&ll, &lq, &qq}) {
+    archive.number(*number);
+  }
 }
 
 void ChangeMonitor::Start::visit(Archive& archive) {
@@ -511,11 +583,7 @@ void ChangeMonitor::Start::visit(Archive& archive) {
   for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
     archive.numbers(*values);
   }
-  for (Effect& one : effect) {
-    for (double* const number : {&one.ll, &one.lq, &one.qq}) {
-      archive.number(*number);
-    }
-  }
+  std::ranges::for_each(effect, [&](Effect& one) { one.visit(archive); });
   for (Lone& one : lone) {
     for (double* const number : {&one.size, &one.variance, &one.likelihood}) {
       archive.number(*number);
@@ -533,7 +601,8 @@ void ChangeMonitor::visit(Archive& archive) {
   archive.whole(changed_start_, 0, kMostStarts);
   archive.require(changed_start_ == kMostStarts || starts_[changed_start_].alive,
                   "holds a change without a start");
-  for (double* const number : {&believed_s_, &moved_s_, &since_s_, &samples_, &usual_}) {
+  archive.any_number(believed_s_);
+  for (double* const number : {&moved_s_, &since_s_, &samples_, &usual_}) {
     archive.number(*number);
   }
   archive.any_number(row_s_);
@@ -542,6 +611,7 @@ void ChangeMonitor::visit(Archive& archive) {
   archive.whole(begun_);
   archive.numbers(told_);
   archive.numbers(told_gains_);
+  std::ranges::for_each(usual_effect_, [&](Effect& one) { one.visit(archive); });
   archive.whole(gained_, 0, commands_);
 }
 

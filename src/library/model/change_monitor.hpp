@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
+#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "learner/error_correlation.hpp"
 #include "learner/robust_scale.hpp"
@@ -62,6 +63,13 @@ class ChangeMonitor {
   /// times that do not decrease.
   Event update(std::span<const double> x, std::span<const double> y, double t);
 
+  /// Believes at once what a diagnosis has named: the share that is left of a thruster's effect, or
+  /// the factor on an axis' drag, since `since_s` [s]. The change is on probation as any other, and
+  /// rows go on refining its size. Ensures: `none` and nothing done for other causes, for a command
+  /// that is no factor of its terms, while a change is followed, for a change that was followed
+  /// before, and while usual errors are not known.
+  Event believe_cause(const Cause& cause, double since_s);
+
   double since() const { return since_s_; }  ///< Start of the last change [s].
 
   /// Change of an axis' coefficients by the last event, [target unit per unit of the term]; the
@@ -103,6 +111,7 @@ class ChangeMonitor {
     /// The factor g of the command with (g - 1) L + (g² - 1) Q ≈ size (L + Q).
     double gain(double size) const;
     void add(double linear, double square, double weight);
+    void visit(Archive& archive);
   };
 
   /// The hypothesis of a change at one moment.
@@ -110,17 +119,18 @@ class ChangeMonitor {
     bool alive = false;
     double begun_s = 0.0;
     double life_s = 0.0;
-    double evidence = 0.0;           ///< [nats]
-    double samples = 0.0;            ///< independent samples so far
-    double peak = 0.0;               ///< largest evidence so far [nats]
-    double likelihood = 0.0;         ///< of all sizes together, over no change [nats]
-    std::vector<double> theta;       ///< Θ₀, axis after axis
-    std::vector<double> size;        ///< mean of s
-    std::vector<double> covariance;  ///< of s
-    std::vector<Lone> lone;          ///< each cause, then drag of all axes, then inertia of all
-    std::vector<double> scatter;     ///< usual error of each axis
-    std::vector<double> tau;         ///< rows per independent sample of each axis
-    std::vector<Effect> effect;      ///< of each command
+    double evidence = 0.0;              ///< [nats]
+    double samples = 0.0;               ///< independent samples so far
+    double peak = 0.0;                  ///< largest evidence so far [nats]
+    double likelihood = 0.0;            ///< of all sizes together, over no change [nats]
+    std::vector<double> theta;          ///< Θ₀, axis after axis
+    std::vector<double> size;           ///< mean of s
+    std::vector<double> covariance;     ///< of s
+    std::vector<Lone> lone;             ///< each cause, then drag of all axes, then inertia of all
+    std::vector<double> scatter;        ///< usual error of each axis
+    std::vector<double> tau;            ///< rows per independent sample of each axis
+    std::vector<Effect> effect;         ///< of each command
+    void begin(double t, double life);  ///< Knows nothing; Θ₀, scatter and tau stay.
     void visit(Archive& archive);
   };
 
@@ -134,7 +144,11 @@ class ChangeMonitor {
   void learn(std::span<const double> y);
   void begin_start(double t);
   void end_old_starts(double t);
-  void effects(const Start& start, std::size_t axis);
+  void effects(std::span<const double> theta, std::size_t axis);
+  bool errors_known() const;
+  void expect_usual_errors(Start& start) const;
+  Start& start_before(double since_s);
+  std::optional<std::size_t> place_of(const Cause& cause) const;
   double lone_effect(std::size_t lone, std::size_t axis) const;
   void observe(Start& start, std::span<const double> y, bool against_fit);
   void observe_lone(Start& start, std::size_t axis, double error, double noise, double unchanged);
@@ -163,7 +177,7 @@ class ChangeMonitor {
   std::vector<Start> starts_;
   std::size_t changed_start_;  ///< number of the start believed; kMostStarts: none
   std::size_t gained_;         ///< command of which the effect has changed; commands_: not so
-  double believed_s_ = 0.0;    ///< [s]
+  double believed_s_;          ///< the last change, by whichever mechanism [s]
   double moved_s_ = 0.0;       ///< last step [s]
   double since_s_ = 0.0;       ///< [s]
   double row_s_;               ///< time of the last row [s]
@@ -179,6 +193,7 @@ class ChangeMonitor {
   double leverage_ = 0.0;           ///< φᵀPφ of the row
   std::vector<double> effect_, gain_, mixed_;  ///< scratch: per cause
   std::vector<double> told_gains_;             ///< in service, since before the change
+  std::vector<Effect> usual_effect_;           ///< of each command on all rows learned
   std::vector<double> square_;  ///< scratch: per command, the effect in higher powers
   double value_ = 0.0;          ///< scratch: Θ₀ᵀφ
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -104,6 +105,8 @@ struct DynamicsModel::Parts {
 
   void order_axes();
   void monitor_change(std::span<const double> x, std::span<const double> y, double t);
+  void believe_diagnosis();
+  void follow(ChangeMonitor::Event event);
   void watch(std::span<const double> x, std::span<const double> y, double t);
   void visit(Archive& archive);
 
@@ -116,7 +119,8 @@ struct DynamicsModel::Parts {
   std::optional<ChangeMonitor> change;
   std::optional<SteadyPart> steady;
   std::optional<Diagnosis> diagnosis;
-  Budget budget;  ///< of every update
+  double named_since_s = -std::numeric_limits<double>::infinity();  ///< the last finding seen
+  Budget budget;                                                    ///< of every update
   WorkLimit work{1, 1};
 };
 
@@ -184,11 +188,34 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
       })) {
     return;
   }
-  const ChangeMonitor::Event event = change->update(x, y, t);
-  if (event != ChangeMonitor::Event::none && steady) {
+  follow(change->update(x, y, t));
+}
+
+// The diagnosis names a cause by its own equations of motion and on a window of its own, often
+// before the monitor knows the vehicle well enough to compare.
+void DynamicsModel::Parts::believe_diagnosis() {
+  if (diagnosis->findings().empty()) {
+    return;
+  }
+  const Finding& last = diagnosis->findings().back();
+  if (last.state != FindingState::named || last.since_s <= named_since_s) {
+    return;
+  }
+  named_since_s = last.since_s;
+  if (last.count == 1) {
+    follow(change->believe_cause(last.causes.front(), last.since_s));
+  }
+}
+
+void DynamicsModel::Parts::follow(ChangeMonitor::Event event) {
+  auto& decisions = state.decisions;
+  if (event == ChangeMonitor::Event::none) {
+    return;
+  }
+  if (steady && change->by_gain()) {
     steady->amplify(change->gains());
   }
-  for (std::size_t i = 0; event != ChangeMonitor::Event::none && i < axes.size(); ++i) {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
     decisions[i].changed = event == ChangeMonitor::Event::changed;
     decisions[i].withdrawn = event == ChangeMonitor::Event::withdrawn;
     decisions[i].changed_since = decisions[i].changed ? change->since() : 0.0;
@@ -200,6 +227,9 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
 void DynamicsModel::Parts::watch(std::span<const double> x, std::span<const double> y, double t) {
   if (diagnosis) {
     diagnosis->update(x, y, t);
+    if (change) {
+      believe_diagnosis();
+    }
   }
   const auto& decisions = state.decisions;
   if (!steady || std::ranges::any_of(decisions, [](const Decision& decision) {
@@ -235,6 +265,7 @@ void DynamicsModel::Parts::visit(Archive& archive) {
   }
   if (diagnosis) {
     archive.part("diagnosis", *diagnosis);
+    archive.any_number(named_since_s);
   }
 }
 

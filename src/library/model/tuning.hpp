@@ -137,6 +137,7 @@ inline constexpr struct ModelTuning {
     int doublings = 4;               ///< of the life, up to 640 s; by hand
     double longest_life_s = 640.0;   ///< s; by hand
     double deviation = 0.5;          ///< of a size; 0.3 gives the same
+    double named_deviation = 0.1;    ///< of a size that a diagnosis names; 0 and 0.5 on a catamaran
     double clip_nats = 1.5;          ///< largest evidence of a sample; from 0.8, 1.5, 3
     double enough = 40.0;            ///< nats; without a change up to 39
     double over_usual = 2.0;         ///< times the largest evidence of former starts; from 1.5, 2
