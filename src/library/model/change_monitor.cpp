@@ -388,11 +388,8 @@ ChangeMonitor::Start& ChangeMonitor::start_before(double since_s) {
   return *last;
 }
 
-// The number of a cause; none of a kind that is not followed.
-std::optional<std::size_t> ChangeMonitor::place_of(const Cause& cause) const {
-  if (cause.kind == CauseKind::drag && cause.place < axes()) {
-    return commands_ + cause.place;
-  }
+// Drag is not followed: where the speed hardly varies, it is as the thrust and the constant force.
+std::optional<std::size_t> ChangeMonitor::command_of(const Cause& cause) const {
   const auto found = std::ranges::find(gains_, cause.place, &CommandGain::input);
   const auto command = static_cast<std::size_t>(found - gains_.begin());
   const bool follows =
@@ -401,8 +398,8 @@ std::optional<std::size_t> ChangeMonitor::place_of(const Cause& cause) const {
 }
 
 ChangeMonitor::Event ChangeMonitor::believe_cause(const Cause& cause, double since_s) {
-  const std::optional<std::size_t> place = place_of(cause);
-  if (!place || changed_start_ < kMostStarts || !errors_known() || since_s <= believed_s_) {
+  const std::optional<std::size_t> command = command_of(cause);
+  if (!command || changed_start_ < kMostStarts || !errors_known() || since_s <= believed_s_) {
     return Event::none;
   }
   const double size = cause.size - 1.0;
@@ -410,9 +407,9 @@ ChangeMonitor::Event ChangeMonitor::believe_cause(const Cause& cause, double sin
   Start& start = start_before(since_s);
   start.begin(since_s, kChange.life_s);
   expect_usual_errors(start);
-  start.size[*place] = size;
-  start.covariance[*place * (causes() + 1)] = variance;
-  start.lone[*place] = {.size = size, .variance = variance, .likelihood = kChange.enough};
+  start.size[*command] = size;
+  start.covariance[*command * (causes() + 1)] = variance;
+  start.lone[*command] = {.size = size, .variance = variance, .likelihood = kChange.enough};
   start.effect = usual_effect_;
   return believe(start, row_s_);
 }

@@ -63,11 +63,11 @@ class ChangeMonitor {
   /// times that do not decrease.
   Event update(std::span<const double> x, std::span<const double> y, double t);
 
-  /// Believes at once what a diagnosis has named: the share that is left of a thruster's effect, or
-  /// the factor on an axis' drag, since `since_s` [s]. The change is on probation as any other, and
-  /// rows go on refining its size. Ensures: `none` and nothing done for other causes, for a command
-  /// that is no factor of its terms, while a change is followed, for a change that was followed
-  /// before, and while usual errors are not known.
+  /// Believes at once that a diagnosis has named a thruster with another effect since `since_s`
+  /// [s]. The change is on probation as any other, and rows go on refining its size. Ensures:
+  /// `none` and nothing done for other causes, for a command that is no factor of its terms, while
+  /// a change is followed, for a change that was followed before, and while usual errors are not
+  /// known.
   Event believe_cause(const Cause& cause, double since_s);
 
   double since() const { return since_s_; }  ///< Start of the last change [s].
@@ -148,7 +148,7 @@ class ChangeMonitor {
   bool errors_known() const;
   void expect_usual_errors(Start& start) const;
   Start& start_before(double since_s);
-  std::optional<std::size_t> place_of(const Cause& cause) const;
+  std::optional<std::size_t> command_of(const Cause& cause) const;
   double lone_effect(std::size_t lone, std::size_t axis) const;
   void observe(Start& start, std::span<const double> y, bool against_fit);
   void observe_lone(Start& start, std::size_t axis, double error, double noise, double unchanged);

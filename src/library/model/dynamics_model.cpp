@@ -191,7 +191,7 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
   follow(change->update(x, y, t));
 }
 
-// The diagnosis names a cause by its own equations of motion and on a window of its own, often
+// The diagnosis names a thruster by its own equations of motion and on a window of its own, often
 // before the monitor knows the vehicle well enough to compare.
 void DynamicsModel::Parts::believe_diagnosis() {
   if (diagnosis->findings().empty()) {

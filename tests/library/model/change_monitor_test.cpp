@@ -192,15 +192,9 @@ TEST_F(NamedCause, IsTakenBackWhereRowsContradict) {
   }
 }
 
-TEST_F(NamedCause, OfDragIsAStepOfTheCoefficients) {
-  const Story story = watch_with({.kind = CauseKind::drag, .place = 1, .size = 1.5}, 1.0);
-  EXPECT_EQ(at_once_, Event::changed);
-  EXPECT_EQ(first_, 1.0);
-  EXPECT_FALSE(story.moved[1].empty());
-}
-
 TEST_F(NamedCause, OfAnotherKindChangesNothing) {
   for (const Cause& cause : {Cause{.kind = CauseKind::thruster, .place = 0, .size = 0.5},
+                             Cause{.kind = CauseKind::drag, .place = 1, .size = 1.5},
                              Cause{.kind = CauseKind::force, .place = 0, .size = 0.5},
                              Cause{.kind = CauseKind::sensor_scale, .place = 0, .size = 0.5}}) {
     EXPECT_EQ(monitor_.believe_cause(cause, 1.0), Event::none);
