@@ -233,7 +233,7 @@ void LiveModel::set_nominal(const std::string& target,
   for (const auto& [term, value] : coefficients) {
     known.push_back({term, value});
   }
-  model_.set_nominal(static_cast<std::size_t>(found - targets_.begin()), known);
+  kelpie::set_nominal(model_, static_cast<std::size_t>(found - targets_.begin()), known);
 }
 
 void LiveModel::set_nominal_models(const std::vector<TrainedModel>& models) {

@@ -28,7 +28,7 @@ class LiveModel {
   /// the decisions (n, axes). After an interrupt, earlier rows stay learned.
   py::array_t<Decision> update(const Array& x, const Array& y, const Array& t);
 
-  /// DynamicsModel::set_nominal(), of the axis of a target.
+  /// kelpie::set_nominal(), of the axis of a target.
   void set_nominal(const std::string& target, const std::map<std::string, double>& coefficients);
   /// The same, of the mean of earlier models (study::nominal_of()).
   void set_nominal_models(const std::vector<TrainedModel>& models);

@@ -100,15 +100,6 @@ class DynamicsModel final : public OnlineModel {
   /// than the setting `memory`, samples in each model, and finite numbers.
   void set_past_models(std::size_t axis, std::vector<StoredPastModel> models);
 
-  /// Gives an axis coefficients of physics terms known beforehand, as of the vehicle's equations of
-  /// motion or of an earlier model, from which learning begins (docs/method/committee.md): terms by
-  /// their text (TermSet::text()), `1` for the constant; terms without a coefficient have 0. An
-  /// empty list: nothing is known. Errors of coefficients are not read. Without effect on a learner
-  /// alone (`learner = svr`).
-  /// Requires that nothing has been learned yet. Throws InputError on an axis or term that the
-  /// model does not have, a term given twice, or a value that is not finite. Allocates.
-  void set_nominal(std::size_t axis, std::span<const Coefficient> known);
-
   /// The whole state as bytes: everything learned, and every input of the next update.
   std::string save() const;
 
@@ -139,6 +130,8 @@ class DynamicsModel final : public OnlineModel {
   const DynamicsAxis& mechanisms(std::size_t axis) const;
 
  private:
+  friend void set_nominal(DynamicsModel& model, std::size_t axis,
+                          std::span<const Coefficient> known);
   struct Parts;
 
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
@@ -146,5 +139,14 @@ class DynamicsModel final : public OnlineModel {
 
   std::unique_ptr<Parts> parts_;  ///< never null, unless moved from
 };
+
+/// Gives an axis of a model coefficients of physics terms known beforehand, as of the vehicle's
+/// equations of motion or of an earlier model, from which learning begins
+/// (docs/method/committee.md): terms by their text (TermSet::text()), `1` for the constant; terms
+/// without a coefficient have 0. An empty list: nothing is known. Errors of coefficients are not
+/// read. Without effect on a learner alone (`learner = svr`). Requires that nothing has been
+/// learned yet. Throws InputError on an axis or term that the model does not have, a term given
+/// twice, or a value that is not finite. Allocates.
+void set_nominal(DynamicsModel& model, std::size_t axis, std::span<const Coefficient> known);
 
 }  // namespace kelpie

@@ -408,17 +408,6 @@ void Committee::shift(std::span<const double> step, const Decision& news) {
   freeze_copies();
 }
 
-LearnerState Committee::state() const {
-  using Comparison = LearnerState::Comparison;
-  const ChangeDetector& detector = learner_.detector();
-  return {.comparison = detector.on_probation() ? Comparison::probation
-                        : detector.trying()     ? Comparison::challenger
-                                                : Comparison::none,
-          .task = learner_.task(),
-          .past_models = learner_.memory().state(),
-          .relearning = !to_learn_.done()};
-}
-
 // Members that know nothing yet, or whose scale is too small, disagree for another reason than the
 // place.
 Limits Committee::limits() const {
@@ -452,6 +441,18 @@ void Committee::visit(Archive& archive) {
   archive.flag(kernels_only_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
+}
+
+LearnerState state_of(const Committee& committee) {
+  const AdaptiveSvr& learner = committee.learner_;
+  using Comparison = LearnerState::Comparison;
+  const ChangeDetector& detector = learner.detector();
+  return {.comparison = detector.on_probation() ? Comparison::probation
+                        : detector.trying()     ? Comparison::challenger
+                                                : Comparison::none,
+          .task = learner.task(),
+          .past_models = learner.memory().state(),
+          .relearning = !committee.to_learn_.done()};
 }
 
 }  // namespace kelpie

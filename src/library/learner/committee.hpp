@@ -96,7 +96,8 @@ class Committee final : public OnlineRegressor {
   void resume_from(const FunctionMix& said, const PastModel::Completion& complete, double t);
 
   /// Begins with weights of the terms known beforehand; the last number is of the bias. `line`
-  /// takes these as a prior, and a larger share until errors are known. Requires a committee without samples. Allocates nothing.
+  /// takes these as a prior, and a larger share until errors are known. Requires a committee
+  /// without samples. Allocates nothing.
   void expect(std::span<const double> weights);
 
   /// Follows a change of the vehicle by a known step of the terms' weights; the last number is of
@@ -107,7 +108,8 @@ class Committee final : public OnlineRegressor {
   const AdaptiveSvr& learner() const { return learner_; }
   AdaptiveSvr& learner() { return learner_; }  ///< To add past models.
 
-  LearnerState state() const;  ///< For tests and for reading along.
+  /// For tests and for reading along.
+  friend LearnerState state_of(const Committee& committee);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

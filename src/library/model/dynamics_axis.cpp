@@ -20,7 +20,7 @@ struct Served {
 
 }  // namespace
 
-Committee::Plan DynamicsAxis::committee_plan(const SharedSettings& shared, const TermSet& terms) {
+Committee::Plan committee_plan(const SharedSettings& shared, const TermSet& terms) {
   return {.alone = shared.learner == LearnerKind::svr, .line = terms.without_products()};
 }
 

@@ -87,9 +87,6 @@ class DynamicsAxis final : public Scaled {
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
-  /// The committee of these settings.
-  static Committee::Plan committee_plan(const SharedSettings& shared, const TermSet& terms);
-
   const Committee& committee() const { return learner_; }          ///< On scaled samples.
   const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner.
   const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
@@ -109,5 +106,8 @@ class DynamicsAxis final : public Scaled {
   Disturbance disturbance_;
   ConformalInterval corrected_interval_;  ///< around predictions with the disturbance
 };
+
+/// The committee of these settings.
+Committee::Plan committee_plan(const SharedSettings& shared, const TermSet& terms);
 
 }  // namespace kelpie

@@ -291,7 +291,7 @@ DynamicsModel::~DynamicsModel() = default;
 std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                  const ModelSettings& settings) {
   const TermSet terms = TermSet::from(settings.shared.terms, inputs, settings.axes.size());
-  const Committee::Plan plan = DynamicsAxis::committee_plan(settings.shared, terms);
+  const Committee::Plan plan = committee_plan(settings.shared, terms);
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
                                  return GuardedAxis::bytes(
@@ -406,14 +406,6 @@ void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastMode
   parts_->axes[axis].set_past_models(std::move(models));
 }
 
-void DynamicsModel::set_nominal(std::size_t axis, std::span<const Coefficient> known) {
-  require(axis < parts_->axes.size(), "axis",
-          std::to_string(axis) + " given; there are " + std::to_string(parts_->axes.size()));
-  if (!known.empty()) {
-    parts_->axes[axis].expect_vehicle(coefficients_of(known, mechanisms(axis).terms()));
-  }
-}
-
 bool DynamicsModel::ready() const {
   return std::ranges::all_of(parts_->axes, [](const auto& axis) { return axis.status().ready; });
 }
@@ -456,6 +448,15 @@ TrainedModel DynamicsModel::trained() const {
     }
   }
   return model;
+}
+
+void set_nominal(DynamicsModel& model, std::size_t axis, std::span<const Coefficient> known) {
+  std::vector<GuardedAxis>& axes = model.parts_->axes;
+  require(axis < axes.size(), "axis",
+          std::to_string(axis) + " given; there are " + std::to_string(axes.size()));
+  if (!known.empty()) {
+    axes[axis].expect_vehicle(coefficients_of(known, model.mechanisms(axis).terms()));
+  }
 }
 
 }  // namespace kelpie

@@ -186,7 +186,7 @@ Nominal nominal_of(const vehicle::VehicleParameters& vehicle, const log::Dataset
 
 void give(const Nominal& nominal, DynamicsModel& model) {
   for (std::size_t axis = 0; axis < nominal.size(); ++axis) {
-    model.set_nominal(axis, nominal[axis]);
+    set_nominal(model, axis, nominal[axis]);
   }
 }
 

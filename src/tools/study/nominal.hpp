@@ -16,7 +16,7 @@
 namespace kelpie::study {
 
 /// Coefficients of physics terms known before a drive, a list per target of the log, as
-/// DynamicsModel::set_nominal() takes them. An empty list: nothing is known of the target.
+/// set_nominal() takes them. An empty list: nothing is known of the target.
 using Nominal = std::vector<std::vector<Coefficient>>;
 
 /// Coefficients of the member `line` of an earlier model, of targets with these names. Terms

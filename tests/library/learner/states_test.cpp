@@ -94,7 +94,7 @@ class Voyage {
 
   void start_rescale() { scaling_ = true; }
 
-  LearnerState state() const { return committee_.state(); }
+  LearnerState state() const { return state_of(committee_); }
   bool rescaled() const { return switched_ && !scaling_; }
   int changes() const { return changes_; }
   int recalls() const { return recalls_; }
@@ -106,7 +106,7 @@ class Voyage {
 
  private:
   void inspect() {
-    const LearnerState state = committee_.state();
+    const LearnerState state = state_of(committee_);
     const auto row = std::ranges::find_if(kModes, [&](const Mode& mode) {
       return mode.comparison == state.comparison && mode.task == state.task &&
              mode.past_models.contains(state.past_models) &&

@@ -47,7 +47,7 @@ DynamicsModel new_model(const std::string& learner = "committee") {
 DynamicsModel model_with(const Nominal& known, const std::string& learner = "committee") {
   DynamicsModel model = new_model(learner);
   for (std::size_t axis = 0; axis < known.size(); ++axis) {
-    model.set_nominal(axis, known[axis]);
+    set_nominal(model, axis, known[axis]);
   }
   return model;
 }
@@ -145,7 +145,7 @@ TEST(Nominal, ALearnerAloneAndAnEmptyListChangeNothing) {
 TEST(Nominal, RefusesWhatTheModelDoesNotHave) {
   DynamicsModel model = new_model();
   const auto refusal = [&](std::size_t axis, const std::vector<Coefficient>& known) {
-    return message_of<InputError>([&] { model.set_nominal(axis, known); });
+    return message_of<InputError>([&] { set_nominal(model, axis, known); });
   };
   EXPECT_NE(refusal(0, {{"w", 1.0}}).find("w: not a term of this model, which has u"),
             std::string::npos)
