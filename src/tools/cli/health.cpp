@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/log_options.hpp"
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "core/text.hpp"
+#include "file/atomic_file.hpp"
+#include "fleet/log_pattern.hpp"
+#include "health/card.hpp"
+#include "health/card_json.hpp"
+#include "health/factors.hpp"
+#include "kelpie/core/error.hpp"
+#include "motion/states.hpp"
+#include "report/health_report.hpp"
+#include "study/alignment.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kHealthJson = "health.json";
+constexpr const char* kHealthHtml = "health.html";
+constexpr double kSecondsPerDay = 86400.0;
+constexpr double kUnixTime = 1e8;  // [s]: a time stamp later than this counts from 1970
+
+struct HealthArguments : PlanOptions {
+  std::vector<std::string> logs;
+  std::vector<std::string> since;  // NAME=DATE
+  std::vector<std::string> dates;
+  std::string depth;
+  std::string volts;
+  std::string density;
+  std::string out = "out/health";
+  AnswerOptions answer;
+};
+
+// A log of a vehicle, before it is read.
+struct Mission {
+  std::string file;
+  std::string name;
+  double day = NAN;  // of the log's time 0, since 1970
+};
+using Fleet = std::map<std::string, std::vector<Mission>>;
+
+Fleet find_logs(const HealthArguments& options) {
+  Fleet fleet;
+  std::size_t count = 0;
+  const auto add = [&](const fs::path& file, const std::string& vehicle, std::string name) {
+    if (name.empty()) {
+      name = file.stem().string();
+    }
+    const double day = count < options.dates.size()
+                           ? health::day_of(options.dates[count], "--dates")
+                           : health::day_in_name(file.filename().string());
+    fleet[vehicle.empty() ? "vehicle" : vehicle].push_back({file.string(), std::move(name), day});
+    ++count;
+  };
+  for (const std::string& text : options.logs) {
+    if (fs::exists(text) || text.find_first_of("*?[{") == std::string::npos) {
+      add(text, "", "");
+      continue;
+    }
+    std::vector<fleet::MatchedLog> found = fleet::LogPattern(text).find(fs::current_path());
+    require(!found.empty(), "LOG", "'" + text + "' matches no file");
+    std::ranges::sort(found, {}, &fleet::MatchedLog::file);
+    for (const fleet::MatchedLog& log : found) {
+      add(log.file, log.vehicle, log.mission);
+    }
+  }
+  require(options.dates.empty() || options.dates.size() == count, "--dates",
+          fmt::format("{} dates for {} logs", options.dates.size(), count));
+  return fleet;
+}
+
+// The first log of a vehicle settles columns and alignment of all.
+struct Reader {
+  const HealthArguments& options;
+  std::optional<study::LearnPlan> first{};
+
+  log::Dataset read(const std::string& file) {
+    PlanOptions one = options;
+    one.log.source.path = file;
+    one.split = "none";
+    for (const std::string& slow : {options.depth, options.volts, options.density}) {
+      if (!slow.empty()) {
+        one.log.also.push_back(slow);
+      }
+    }
+    if (!first) {
+      first = plan_log(one).plan;
+      return first->data;
+    }
+    one.log.inputs = first->data.input_names;
+    one.log.targets = first->data.target_names;
+    if (!first->current.current.none()) {
+      one.log.inputs.push_back(first->current.current.heading);
+    }
+    const std::optional<file::TomlNode> root =
+        one.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(one.config));
+    const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
+    log::Dataset data = open_log(one.log.source, config, one.log.over(config.roles)).dataset();
+    AlignmentResult known = first->alignment;
+    known.alignment.water = {};
+    return study::plan_learning(std::move(data), study::parse_split("none", 1), first->settings,
+                                one.align, known, false, one.current)
+        .data;
+  }
+};
+
+// Without dates, logs follow each other at once.
+bool set_days(const std::vector<Mission>& missions, std::vector<health::DriveLog>& logs) {
+  const bool in_stamps = std::ranges::all_of(
+      logs, [](const health::DriveLog& log) { return log.data.times_s.front() > kUnixTime; });
+  const bool is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
+                          return std::isfinite(mission.day);
+                        });
+  double end = 0.0;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const double first = logs[i].data.times_s.front() / kSecondsPerDay;
+    const double last = logs[i].data.times_s.back() / kSecondsPerDay;
+    logs[i].day = in_stamps ? 0.0 : is_dated ? missions[i].day : end - first;
+    end = logs[i].day + last;
+  }
+  return is_dated;
+}
+
+std::vector<health::Baseline> baselines_of(const HealthArguments& options) {
+  std::vector<health::Baseline> baselines;
+  for (const std::string& text : options.since) {
+    const std::size_t equals = text.find('=');
+    require(equals != std::string::npos && equals > 0, "--since",
+            "'" + text + "' is no NAME=DATE, as in cleaning=2026-03-03");
+    baselines.push_back(
+        {text.substr(0, equals), health::day_of(text.substr(equals + 1), "--since")});
+  }
+  return baselines;
+}
+
+health::HealthCard card_of(const HealthArguments& options, const std::string& vehicle,
+                           const std::vector<Mission>& missions,
+                           const std::vector<health::Baseline>& baselines) {
+  Reader reader{options};
+  std::vector<health::DriveLog> logs;
+  for (const Mission& mission : missions) {
+    logs.push_back({.data = reader.read(mission.file), .mission = mission.name});
+  }
+  const bool is_dated = set_days(missions, logs);
+  require(is_dated || baselines.empty(), "--since",
+          "needs the dates of the logs: in their names, in their stamps, or by --dates");
+  const log::Dataset& first = logs.front().data;
+  health::DriveColumns columns{
+      .velocities = find_states(reader.first->settings.shared.states, first.input_names,
+                                first.target_names.size()),
+      .volts = options.volts,
+      .density = options.density,
+      .depth = options.depth};
+  if (columns.velocities.empty()) {
+    throw InputError({.file = first.source, .line = 0, .field = {}},
+                     "no input is known as a velocity; name the velocities by --set "
+                     "states=SURGE,SWAY,YAW, in the order of the targets");
+  }
+  return health::make_card(vehicle, is_dated, health::judge_drives(logs, columns), baselines);
+}
+
+void run_health(const HealthArguments& options) {
+  options.answer.begin();
+  const std::vector<health::Baseline> baselines = baselines_of(options);
+  const Fleet fleet = find_logs(options);
+  std::vector<std::string> inputs = options.logs;
+  inputs.push_back(options.config);
+  const file::OutFolder out = take_out_folder(options.out, {kHealthJson, kHealthHtml}, inputs);
+  std::vector<health::HealthCard> cards;
+  for (const auto& [vehicle, missions] : fleet) {
+    cards.push_back(card_of(options, vehicle, missions, baselines));
+  }
+  const file::FileSet files{{kHealthJson, health::cards_json(cards)},
+                            {kHealthHtml, report::health_html(cards)}};
+  file::write_files_whole(out.path(), files);
+  Answer answer{.verdict = report::health_verdict(cards),
+                .tables = report::health_tables(cards),
+                .document = options.answer.json ? health::cards_json(cards) : "",
+                .files = {},
+                .next = {}};
+  answer.add_files(files, out.path());
+  give(answer, options.answer);
+}
+
+}  // namespace
+
+void add_health(CLI::App& app) {
+  const auto [command, options] = add_command(
+      app, "health", "Tell what changed on a vehicle from dive to dive, since when and how fast",
+      run_health);
+  add_files(command, "logs", options->logs,
+            "logs of one vehicle; or patterns as in study files, 'dives/{vehicle}/{mission}.csv'");
+  command->get_option("logs")->required();
+  options->log.add_columns_to(*command);
+  add_file(command, "--config", options->config, "TOML configuration with [log] and settings");
+  add_set(command, options->set);
+  add_list(command, "--since", options->since,
+           "days from which changes are counted anew, NAME=DATE: cleaning=2026-03-03");
+  add_list(command, "--dates", options->dates,
+           "days of the logs, in their order; else from the files' names or stamps");
+  command->add_option("--depth", options->depth, "column with the depth: each dive by itself");
+  command->add_option("--volts", options->volts, "column with the supply of the thrusters [V]");
+  command->add_option("--density", options->density, "column with the water's density [kg/m³]");
+  add_align_option(*command, options->align);
+  add_current_option(*command, options->current);
+  add_accept_option(*command, options->accept);
+  add_out(command, options->out, "folder for health.json and health.html");
+  options->answer.add_to(*command, kHealthJson);
+  add_examples(command, "health dives/2026-*.csv --since cleaning=2026-03-03",
+               "health 'dives/{vehicle}/{mission}.csv' --volts battery");
+}
+
+}  // namespace kelpie::cli
