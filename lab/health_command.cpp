@@ -89,14 +89,13 @@ void judge_last(const HealthStudyArguments& options, const health::HealthCard& c
       continue;
     }
     const double last = card.table.episodes.back().day / kWeekDays;
-    const double truth =
-        0.01 * options.percent * (last - static_cast<double>(options.clean_weeks));
+    const double truth = 0.01 * options.percent * (last - static_cast<double>(options.clean_weeks));
     const health::Estimate size = change.course.change;
     const double relative = size.value / change.course.before.value;
-    study.inside += std::abs(relative - truth) <=
-                            health::kNormal90 * size.error / change.course.before.value
-                        ? 1
-                        : 0;
+    study.inside +=
+        std::abs(relative - truth) <= health::kNormal90 * size.error / change.course.before.value
+            ? 1
+            : 0;
     study.drifts += change.course.kind == health::CourseKind::drift ? 1 : 0;
   }
 }
@@ -117,8 +116,8 @@ void study_seed(const HealthStudyArguments& options, const vehicle::Scenario& sc
     const health::HealthTable table = health::judge_drives(logs, {.velocities = {0, 1, 2}});
     for (std::size_t at = week == options.clean_weeks ? 1 : week; at <= week; ++at) {
       const bool fouled = at > options.clean_weeks && options.percent != 0.0;
-      const health::HealthCard card =
-          health::make_card("simulated", true, until(table, kWeekDays * static_cast<double>(at)), {});
+      const health::HealthCard card = health::make_card(
+          "simulated", true, until(table, kWeekDays * static_cast<double>(at)), {});
       study.false_reports += reports(card, fouled);
       ++study.tests;
       if (fouled && found == 0 && tells(card, "surge drag")) {
@@ -138,20 +137,21 @@ void study_seed(const HealthStudyArguments& options, const vehicle::Scenario& sc
 
 std::string health_text(const HealthStudyArguments& options, const HealthStudy& study) {
   std::string text = fmt::format(
-      "{} seeds, {} dives of {:g} minutes a week, {} clean weeks, then {:g} % of drag a week for {} "
-      "weeks\nstandard error of surge drag in a dive: {:.2f} %\n{} false reports in {} weekly tests "
+      "{} seeds, {} dives of {:g} minutes a week, {} clean weeks, then {:g} % of drag a week for "
+      "{} "
+      "weeks\nstandard error of surge drag in a dive: {:.2f} %\n{} false reports in {} weekly "
+      "tests "
       "of a vehicle\n",
       options.seeds, options.dives, options.minutes, options.clean_weeks, options.percent,
       options.fouled_weeks, 100.0 * study.mean_error / static_cast<double>(study.dives),
       study.false_reports, study.tests);
   if (options.percent != 0.0) {
     for (std::size_t week = 1; week <= options.fouled_weeks; ++week) {
-      text += fmt::format("found within {} weeks: {} of {}\n", week,
-                          std::ranges::count_if(study.found_week,
-                                                [&](std::size_t found) {
-                                                  return found > 0 && found <= week;
-                                                }),
-                          options.seeds);
+      text += fmt::format(
+          "found within {} weeks: {} of {}\n", week,
+          std::ranges::count_if(study.found_week,
+                                [&](std::size_t found) { return found > 0 && found <= week; }),
+          options.seeds);
     }
     text += fmt::format("after {} weeks: called a drift {}, in the 90 % interval {}\n",
                         options.fouled_weeks, study.drifts, study.inside);
@@ -181,9 +181,10 @@ std::size_t reports_on_noise(std::size_t count, double told) {
 void run_health_study(const HealthStudyArguments& options) {
   if (options.noise > 0) {
     for (const double told : {1.0, 0.5, 1.0 / 3.0}) {
-      cli::say("told errors {:.2f} of the true ones: {} of {} series of noise had a report in a "
-               "year of weekly tests\n",
-               told, reports_on_noise(options.noise, told), options.noise);
+      cli::say(
+          "told errors {:.2f} of the true ones: {} of {} series of noise had a report in a "
+          "year of weekly tests\n",
+          told, reports_on_noise(options.noise, told), options.noise);
     }
     return;
   }
@@ -206,11 +207,12 @@ void run_health_study(const HealthStudyArguments& options) {
 }  // namespace
 
 void add_health(CLI::App& app) {
-  const auto [command, options] = cli::add_command<HealthStudyArguments>(
-      app, "health",
-      "Simulate dives of a vehicle whose drag grows: when `kelpie health` finds the change, and how "
-      "often it reports what is not there",
-      run_health_study);
+  const auto [command, options] =
+      cli::add_command<HealthStudyArguments>(app, "health",
+                                             "Simulate dives of a vehicle whose drag grows: when "
+                                             "`kelpie health` finds the change, and how "
+                                             "often it reports what is not there",
+                                             run_health_study);
   cli::add_file(command, "--scenario", options->scenario,
                 "scenario of one configuration and phase; else identify.toml");
   add_seeds(command, options->seeds, "vehicles");

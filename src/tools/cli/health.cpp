@@ -21,6 +21,7 @@
 #include "health/card.hpp"
 #include "health/card_json.hpp"
 #include "health/factors.hpp"
+#include "health/gliders.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/states.hpp"
 #include "report/health_report.hpp"
@@ -43,6 +44,7 @@ struct HealthArguments : PlanOptions {
   std::string depth;
   std::string volts;
   std::string density;
+  std::vector<std::string> glider;  // NAME=COLUMN
   std::string out = "out/health";
   AnswerOptions answer;
 };
@@ -120,21 +122,29 @@ struct Reader {
   }
 };
 
-// Without dates, logs follow each other at once.
-bool set_days(const std::vector<Mission>& missions, std::vector<health::DriveLog>& logs) {
-  const bool in_stamps = std::ranges::all_of(
-      logs, [](const health::DriveLog& log) { return log.data.times_s.front() > kUnixTime; });
-  const bool is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
-                          return std::isfinite(mission.day);
-                        });
+// Days of the logs' time 0, from their first and last times [s]. Without dates, logs follow each
+// other at once.
+struct LogDays {
+  std::vector<double> days{};
+  bool is_dated = false;
+};
+
+LogDays days_of(const std::vector<Mission>& missions,
+                const std::vector<std::pair<double, double>>& times_s) {
+  const bool in_stamps =
+      std::ranges::all_of(times_s, [](const auto& times) { return times.first > kUnixTime; });
+  LogDays found;
+  found.is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
+                     return std::isfinite(mission.day);
+                   });
   double end = 0.0;
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    const double first = logs[i].data.times_s.front() / kSecondsPerDay;
-    const double last = logs[i].data.times_s.back() / kSecondsPerDay;
-    logs[i].day = in_stamps ? 0.0 : is_dated ? missions[i].day : end - first;
-    end = logs[i].day + last;
+  for (std::size_t i = 0; i < missions.size(); ++i) {
+    found.days.push_back(in_stamps        ? 0.0
+                         : found.is_dated ? missions[i].day
+                                          : end - times_s[i].first / kSecondsPerDay);
+    end = found.days.back() + times_s[i].second / kSecondsPerDay;
   }
-  return is_dated;
+  return found;
 }
 
 std::vector<health::Baseline> baselines_of(const HealthArguments& options) {
@@ -149,17 +159,20 @@ std::vector<health::Baseline> baselines_of(const HealthArguments& options) {
   return baselines;
 }
 
-health::HealthCard card_of(const HealthArguments& options, const std::string& vehicle,
-                           const std::vector<Mission>& missions,
-                           const std::vector<health::Baseline>& baselines) {
+health::HealthTable judge_drives(const HealthArguments& options,
+                                 const std::vector<Mission>& missions, bool& is_dated) {
   Reader reader{options};
   std::vector<health::DriveLog> logs;
+  std::vector<std::pair<double, double>> times_s;
   for (const Mission& mission : missions) {
     logs.push_back({.data = reader.read(mission.file), .mission = mission.name});
+    times_s.emplace_back(logs.back().data.times_s.front(), logs.back().data.times_s.back());
   }
-  const bool is_dated = set_days(missions, logs);
-  require(is_dated || baselines.empty(), "--since",
-          "needs the dates of the logs: in their names, in their stamps, or by --dates");
+  const LogDays found = days_of(missions, times_s);
+  is_dated = found.is_dated;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    logs[i].day = found.days[i];
+  }
   const log::Dataset& first = logs.front().data;
   health::DriveColumns columns{
       .velocities = find_states(reader.first->settings.shared.states, first.input_names,
@@ -172,7 +185,39 @@ health::HealthCard card_of(const HealthArguments& options, const std::string& ve
                      "no input is known as a velocity; name the velocities by --set "
                      "states=SURGE,SWAY,YAW, in the order of the targets");
   }
-  return health::make_card(vehicle, is_dated, health::judge_drives(logs, columns), baselines);
+  return health::judge_drives(logs, columns);
+}
+
+health::HealthTable judge_gliders(const HealthArguments& options,
+                                  const std::vector<Mission>& missions, bool& is_dated) {
+  const health::GliderColumns columns = health::glider_columns(options.glider);
+  std::vector<health::GliderLog> logs;
+  std::vector<std::pair<double, double>> times_s;
+  for (const Mission& mission : missions) {
+    log::Table table = log::read_csv(mission.file);
+    log::convert_units(table, options.log.over({}).units);
+    const std::vector<double>& times = table.columns[table.find(columns.time)];
+    require(table.rows() > 1, mission.file, "has fewer than two rows");
+    times_s.emplace_back(times.front(), times.back());
+    logs.push_back({.table = std::move(table), .mission = mission.name});
+  }
+  const LogDays found = days_of(missions, times_s);
+  is_dated = found.is_dated;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    logs[i].day = found.days[i];
+  }
+  return health::judge_gliders(logs, columns);
+}
+
+health::HealthCard card_of(const HealthArguments& options, const std::string& vehicle,
+                           const std::vector<Mission>& missions,
+                           const std::vector<health::Baseline>& baselines) {
+  bool is_dated = false;
+  health::HealthTable table = options.glider.empty() ? judge_drives(options, missions, is_dated)
+                                                     : judge_gliders(options, missions, is_dated);
+  require(is_dated || baselines.empty(), "--since",
+          "needs the dates of the logs: in their names, in their stamps, or by --dates");
+  return health::make_card(vehicle, is_dated, std::move(table), baselines);
 }
 
 void run_health(const HealthArguments& options) {
@@ -217,6 +262,9 @@ void add_health(CLI::App& app) {
   command->add_option("--depth", options->depth, "column with the depth: each dive by itself");
   command->add_option("--volts", options->volts, "column with the supply of the thrusters [V]");
   command->add_option("--density", options->density, "column with the water's density [kg/m³]");
+  add_list(command, "--glider", options->glider,
+           "columns of a glider's CSV logs, NAME=COLUMN with the names pitch, ballast, depth, "
+           "sinking or speed, and as far as logged time, density, mass, roll, turn");
   add_align_option(*command, options->align);
   add_current_option(*command, options->current);
   add_accept_option(*command, options->accept);

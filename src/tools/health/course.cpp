@@ -150,6 +150,9 @@ void describe(const Series& series, const Candidate& change, double stretch, Cou
       return Estimate{change.fits[k].size.value / span, change.fits[k].size.error / span};
     });
   }
+  for (Estimate* const size : {&course.change, &course.rate}) {
+    size->error = std::hypot(size->error, kTuning.discrepancy * size->value);
+  }
   course.since_day = course.since_low = course.since_high = day(change.best);
   for (std::size_t k = 0; k < change.at.size(); ++k) {
     if (change.nats[k] > change.nats[change.best] - kTuning.since_nats) {

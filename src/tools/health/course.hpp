@@ -49,9 +49,9 @@ struct Course {
 /// with BIC's penalties. The told errors count as known from kTuning.prior_episodes values, so that
 /// episodes that scatter more weaken all evidence; correlated residuals of neighbouring episodes
 /// weaken the evidence likewise. Sizes are means over the possible beginnings, weighted by
-/// likelihood, and the beginnings' scatter is part of the errors. kTuning.least_nats keeps the
-/// false reports of a year of weekly tests below 1 in 500 series (howto/diagnosis.md). Requires as
-/// many days as estimates. Cost: quadratic in the episodes.
+/// likelihood, and the beginnings' scatter is part of the errors. kTuning.least_nats bounds the
+/// false reports of a year of weekly tests (docs/measured/applications.md). Requires as many days
+/// as estimates. Cost: quadratic in the episodes.
 Course judge(const Series& series);
 
 /// The series from `day` on.

@@ -74,7 +74,7 @@ std::string value_text(const health::Quantity& quantity, const Estimate& estimat
   const double scale = quantity.unit.empty() ? 100.0 : 1.0;
   const double half = scale * health::kNormal90 * estimate.error;
   const int places = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6);
-  return fmt::format("{:.{}f}\n± {:.{}f}", scale * estimate.value, places, half, places);
+  return fmt::format("{:.{}f} ± {:.{}f}", scale * estimate.value, places, half, places);
 }
 
 chart::TextTable episodes_view(const HealthCard& card) {
