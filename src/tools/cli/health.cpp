@@ -34,7 +34,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHealthJson = "health.json";
 constexpr const char* kHealthHtml = "health.html";
-constexpr double kSecondsPerDay = 86400.0;
 constexpr double kUnixTime = 1e8;  // [s]: a time stamp later than this counts from 1970
 
 struct HealthArguments : PlanOptions {
@@ -141,8 +140,8 @@ LogDays days_of(const std::vector<Mission>& missions,
   for (std::size_t i = 0; i < missions.size(); ++i) {
     found.days.push_back(in_stamps        ? 0.0
                          : found.is_dated ? missions[i].day
-                                          : end - times_s[i].first / kSecondsPerDay);
-    end = found.days.back() + times_s[i].second / kSecondsPerDay;
+                                          : end - times_s[i].first / health::kSecondsPerDay);
+    end = found.days.back() + times_s[i].second / health::kSecondsPerDay;
   }
   return found;
 }

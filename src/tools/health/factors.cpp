@@ -17,9 +17,6 @@
 namespace kelpie::health {
 namespace {
 
-constexpr double kSecondsPerDay = 86400.0;
-constexpr double kSecondsPerHour = 3600.0;
-
 // Inputs of the equation: all but the slow columns.
 struct DriveInputs {
   std::vector<std::size_t> places{};

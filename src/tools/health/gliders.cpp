@@ -22,8 +22,6 @@
 namespace kelpie::health {
 namespace {
 
-constexpr double kSecondsPerDay = 86400.0;
-constexpr double kSecondsPerHour = 3600.0;
 constexpr double kSurfaceQuantile = 0.1;
 
 constexpr std::array<std::pair<const char*, std::string GliderColumns::*>, 10> kNames{
