@@ -190,11 +190,16 @@ health::HealthTable judge_drives(const HealthArguments& options,
 health::HealthTable judge_gliders(const HealthArguments& options,
                                   const std::vector<Mission>& missions, bool& is_dated) {
   const health::GliderColumns columns = health::glider_columns(options.glider);
+  const log::LogConfig config = log::read_log_config(options.config);
   std::vector<health::GliderLog> logs;
   std::vector<std::pair<double, double>> times_s;
   for (const Mission& mission : missions) {
-    log::Table table = log::read_csv(mission.file);
-    log::convert_units(table, options.log.over({}).units);
+    log::Roles roles = options.log.over(config.roles);
+    roles.inputs = health::columns_of(columns);
+    roles.time = columns.time;
+    log::LogSource source = options.log.source;
+    source.path = mission.file;
+    log::Table table = open_log(source, config, roles).table;
     const std::vector<double>& times = table.columns[table.find(columns.time)];
     require(table.rows() > 1, mission.file, "has fewer than two rows");
     times_s.emplace_back(times.front(), times.back());

@@ -157,37 +157,61 @@ Estimate slope_of(const std::vector<double>& x, const std::vector<double>& y) {
   return {xy / xx, kStudent * std::sqrt(squares * pieces / (pieces - 1.0)) / xx};
 }
 
-// Pitch as a line of the mass, over all logs.
-struct TrimLine {
-  double mean = 0.0;
-  double mean_mass = 0.0;
-  double slope = 0.0;
+// Pitch as a plane over the shifting mass and the ballast, by all logs: place and slope of each.
+struct TrimPlane {
+  double mass = 0.0, ballast = 0.0;  // means
+  double by_mass = 0.0, by_ballast = 0.0;
+
+  double pitch(const GliderRows& rows, std::size_t i) const {
+    return by_mass * (rows.mass[i] - mass) + by_ballast * (rows.glide.ballast_ml[i] - ballast);
+  }
 };
 
-TrimLine trim_line(const std::vector<GliderRows>& logs) {
-  std::vector<double> mass;
-  std::vector<double> pitch;
+template <typename Function>
+void for_each_trim_row(const std::vector<GliderRows>& logs, Function function) {
   for (const GliderRows& rows : logs) {
-    std::ranges::copy(rows.mass, std::back_inserter(mass));
-    std::ranges::copy(rows.glide.pitch_rad, std::back_inserter(pitch));
+    for (std::size_t i = 0; i < rows.mass.size(); ++i) {
+      if (std::isfinite(rows.mass[i])) {
+        function(rows.mass[i], rows.glide.ballast_ml[i], rows.glide.pitch_rad[i]);
+      }
+    }
   }
-  TrimLine line;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    line.mean += pitch[i] / static_cast<double>(mass.size());
-    line.mean_mass += mass[i] / static_cast<double>(mass.size());
-  }
-  std::ranges::transform(mass, mass.begin(), [&](double one) { return one - line.mean_mass; });
-  std::ranges::transform(pitch, pitch.begin(), [&](double one) { return one - line.mean; });
-  const Estimate slope = slope_of(mass, pitch);
-  line.slope = std::isfinite(slope.value) ? slope.value : 0.0;
-  return line;
 }
 
-Estimate trim_of(const GliderRows& rows, std::size_t begin, std::size_t end, const TrimLine& line) {
+TrimPlane trim_plane(const std::vector<GliderRows>& logs) {
+  TrimPlane plane;
+  double count = 0.0;
+  for_each_trim_row(logs, [&](double mass, double ballast, double) {
+    plane.mass += mass;
+    plane.ballast += ballast;
+    count += 1.0;
+  });
+  plane.mass /= std::max(count, 1.0);
+  plane.ballast /= std::max(count, 1.0);
+  double mm = 0.0, mb = 0.0, bb = 0.0, mp = 0.0, bp = 0.0;
+  for_each_trim_row(logs, [&](double mass, double ballast, double pitch) {
+    const double m = mass - plane.mass;
+    const double b = ballast - plane.ballast;
+    mm += m * m;
+    mb += m * b;
+    bb += b * b;
+    mp += m * pitch;
+    bp += b * pitch;
+  });
+  const double determinant = mm * bb - mb * mb;
+  if (determinant > 1e-9 * mm * bb) {
+    plane.by_mass = (bb * mp - mb * bp) / determinant;
+    plane.by_ballast = (mm * bp - mb * mp) / determinant;
+  }
+  return plane;
+}
+
+Estimate trim_of(const GliderRows& rows, std::size_t begin, std::size_t end,
+                 const TrimPlane& plane) {
   std::vector<double> left;
   for (std::size_t i = begin; i < end; ++i) {
     if (std::isfinite(rows.mass[i])) {
-      left.push_back(rows.glide.pitch_rad[i] - line.slope * (rows.mass[i] - line.mean_mass));
+      left.push_back(rows.glide.pitch_rad[i] - plane.pitch(rows, i));
     }
   }
   return slope_of(std::vector<double>(left.size(), 1.0), left);
@@ -288,7 +312,7 @@ void remark_on_scores(const std::vector<GliderLog>& logs, const std::vector<Glid
 // The estimates of a dive, in the order of the quantities.
 std::vector<Estimate> dive_estimates(const GliderRows& rows, std::size_t begin, std::size_t end,
                                      const GlideFit& common, const GliderColumns& columns,
-                                     const TrimLine& line) {
+                                     const TrimPlane& plane) {
   const Places free = dive_places(columns);
   const std::array part{part_of(rows.glide, begin, end)};
   std::vector<Estimate> estimates;
@@ -304,7 +328,7 @@ std::vector<Estimate> dive_estimates(const GliderRows& rows, std::size_t begin, 
                             : Estimate{kNan, kNan});
   }
   if (!columns.mass.empty()) {
-    estimates.push_back(trim_of(rows, begin, end, line));
+    estimates.push_back(trim_of(rows, begin, end, plane));
   }
   if (!columns.turn.empty()) {
     estimates.push_back(turn_of(rows, begin, end));
@@ -351,6 +375,18 @@ GliderColumns glider_columns(const std::vector<std::string>& pairs) {
   return columns;
 }
 
+std::vector<std::string> columns_of(const GliderColumns& columns) {
+  std::vector<std::string> names;
+  for (const auto& [name, member] : kNames) {
+    const std::string& column = columns.*member;
+    if (member != &GliderColumns::time && !column.empty() &&
+        std::ranges::find(names, column) == names.end()) {
+      names.push_back(column);
+    }
+  }
+  return names;
+}
+
 HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumns& columns) {
   std::vector<GliderRows> rows;
   std::vector<GlideRows> all;
@@ -365,7 +401,7 @@ HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumn
     throw InputError({.file = logs.front().table.source, .line = 0, .field = {}}, error.what());
   }
   HealthTable table{.quantities = quantities_of(columns), .episodes = {}, .estimates = {}};
-  const TrimLine line = columns.mass.empty() ? TrimLine{} : trim_line(rows);
+  const TrimPlane plane = trim_plane(rows);
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const std::vector<double>& times = rows[i].glide.times_s;
     std::size_t number = 0;
@@ -375,7 +411,7 @@ HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumn
            .name = fmt::format("{}, dive {}", logs[i].mission, ++number),
            .day = logs[i].day + 0.5 * (times[begin] + times[end - 1]) / kSecondsPerDay,
            .hours = (times[end - 1] - times[begin]) / kSecondsPerHour});
-      table.estimates.push_back(dive_estimates(rows[i], begin, end, common, columns, line));
+      table.estimates.push_back(dive_estimates(rows[i], begin, end, common, columns, plane));
     }
   }
   if (table.episodes.empty()) {

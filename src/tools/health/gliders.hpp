@@ -28,6 +28,9 @@ struct GliderColumns {
 /// text, and without pitch, ballast, depth, and one of sinking and speed.
 GliderColumns glider_columns(const std::vector<std::string>& pairs);
 
+/// The columns that are named, without the time.
+std::vector<std::string> columns_of(const GliderColumns& columns);
+
 /// A glider's log, and the day of the time 0.
 struct GliderLog {
   log::Table table;
@@ -36,11 +39,12 @@ struct GliderLog {
 };
 
 /// Judges every dive. All parameters of fit_glide() are fitted to all logs together, then buoyancy,
-/// its growth with depth, and drag to each dive; besides, the pitch less what the shifting mass
-/// makes, and the turn rate over roll times sinking. The remarks tell R² of the vertical speed and
-/// the root mean square error of the speed: on the second half of each log after learning the
-/// first, and of each log after the first dive, by the other logs' parameters adapted to that dive.
-/// Rows without finite pitch, ballast and depth are left out. Throws InputError naming the log.
+/// its growth with depth, and drag to each dive; besides, the pitch less what mass and
+/// ballast make, and the turn rate over roll times sinking. The remarks tell R² of the vertical
+/// speed and the root mean square error of the speed: on the second half of each log after learning
+/// the first, and of each log after the first dive, by the other logs' parameters adapted to that
+/// dive. Rows without finite pitch, ballast and depth are left out. Throws InputError naming the
+/// log.
 HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumns& columns);
 
 }  // namespace kelpie::health

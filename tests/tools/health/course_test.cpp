@@ -38,7 +38,7 @@ double fouling(double day) {
 TEST(Course, NoiseHasNoChangeInAYearOfWeeklyTests) {
   RandomStream random(1, "course");
   int reports = 0;
-  for (int vehicle = 0; vehicle < 100; ++vehicle) {
+  for (int vehicle = 0; vehicle < 300; ++vehicle) {
     const Series year = weekly(52, random, [](double) { return 1.0; });
     bool found = false;
     for (std::size_t week = 1; week <= 52; ++week) {
@@ -50,7 +50,7 @@ TEST(Course, NoiseHasNoChangeInAYearOfWeeklyTests) {
     }
     reports += found ? 1 : 0;
   }
-  EXPECT_LE(reports, 1);
+  EXPECT_LE(reports, 3);
 }
 
 TEST(Course, ADriftIsToldFromAStepWithSizeRateAndBeginning) {
