@@ -34,6 +34,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHealthJson = "health.json";
 constexpr const char* kHealthHtml = "health.html";
+constexpr const char* kGlideEnding = "_glide.csv";
 constexpr double kUnixTime = 1e8;  // [s]: a time stamp later than this counts from 1970
 
 struct HealthArguments : PlanOptions {
@@ -44,6 +45,7 @@ struct HealthArguments : PlanOptions {
   std::string volts;
   std::string density;
   std::vector<std::string> glider;  // NAME=COLUMN
+  bool writes_glides = false;
   std::string out = "out/health";
   AnswerOptions answer;
 };
@@ -187,8 +189,10 @@ health::HealthTable judge_drives(const HealthArguments& options,
   return health::judge_drives(logs, columns);
 }
 
+// `files`: gets the logs with the glider's speeds, where wanted.
 health::HealthTable judge_gliders(const HealthArguments& options,
-                                  const std::vector<Mission>& missions, bool& is_dated) {
+                                  const std::vector<Mission>& missions, bool& is_dated,
+                                  file::FileSet& files) {
   const health::GliderColumns columns = health::glider_columns(options.glider);
   const log::LogConfig config = log::read_log_config(options.config);
   std::vector<health::GliderLog> logs;
@@ -210,15 +214,23 @@ health::HealthTable judge_gliders(const HealthArguments& options,
   for (std::size_t i = 0; i < logs.size(); ++i) {
     logs[i].day = found.days[i];
   }
-  return health::judge_gliders(logs, columns);
+  health::HealthTable judged = health::judge_gliders(logs, columns);
+  if (options.writes_glides) {
+    const std::vector<log::Table> tables = health::glide_tables(logs, columns);
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      files[logs[i].mission + kGlideEnding] = log::csv_text(tables[i]);
+    }
+  }
+  return judged;
 }
 
 health::HealthCard card_of(const HealthArguments& options, const std::string& vehicle,
                            const std::vector<Mission>& missions,
-                           const std::vector<health::Baseline>& baselines) {
+                           const std::vector<health::Baseline>& baselines, file::FileSet& files) {
   bool is_dated = false;
-  health::HealthTable table = options.glider.empty() ? judge_drives(options, missions, is_dated)
-                                                     : judge_gliders(options, missions, is_dated);
+  health::HealthTable table = options.glider.empty()
+                                  ? judge_drives(options, missions, is_dated)
+                                  : judge_gliders(options, missions, is_dated, files);
   require(is_dated || baselines.empty(), "--since",
           "needs the dates of the logs: in their names, in their stamps, or by --dates");
   return health::make_card(vehicle, is_dated, std::move(table), baselines);
@@ -228,15 +240,25 @@ void run_health(const HealthArguments& options) {
   options.answer.begin();
   const std::vector<health::Baseline> baselines = baselines_of(options);
   const Fleet fleet = find_logs(options);
-  std::vector<std::string> inputs = options.logs;
-  inputs.push_back(options.config);
-  const file::OutFolder out = take_out_folder(options.out, {kHealthJson, kHealthHtml}, inputs);
-  std::vector<health::HealthCard> cards;
+  require(!options.writes_glides || !options.glider.empty(), "--glide-csv", "needs --glider");
+  std::vector<std::string> inputs{options.config};
+  std::vector<std::string> names{kHealthJson, kHealthHtml};
   for (const auto& [vehicle, missions] : fleet) {
-    cards.push_back(card_of(options, vehicle, missions, baselines));
+    for (const Mission& mission : missions) {
+      inputs.push_back(mission.file);
+      if (options.writes_glides) {
+        names.push_back(mission.name + kGlideEnding);
+      }
+    }
   }
-  const file::FileSet files{{kHealthJson, health::cards_json(cards)},
-                            {kHealthHtml, report::health_html(cards)}};
+  const file::OutFolder out = take_out_folder(options.out, names, inputs);
+  std::vector<health::HealthCard> cards;
+  file::FileSet files;
+  for (const auto& [vehicle, missions] : fleet) {
+    cards.push_back(card_of(options, vehicle, missions, baselines, files));
+  }
+  files[kHealthJson] = health::cards_json(cards);
+  files[kHealthHtml] = report::health_html(cards);
   file::write_files_whole(out.path(), files);
   Answer answer{.verdict = report::health_verdict(cards),
                 .tables = report::health_tables(cards),
@@ -269,6 +291,8 @@ void add_health(CLI::App& app) {
   add_list(command, "--glider", options->glider,
            "columns of a glider's CSV logs, NAME=COLUMN with the names pitch, ballast, depth, "
            "sinking or speed, and as far as logged time, density, mass, roll, turn");
+  command->add_flag("--glide-csv", options->writes_glides,
+                    "write each glider's log with the speeds of steady gliding, for `learn`");
   add_align_option(*command, options->align);
   add_current_option(*command, options->current);
   add_accept_option(*command, options->accept);

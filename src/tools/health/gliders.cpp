@@ -39,6 +39,7 @@ constexpr std::array<std::pair<const char*, std::string GliderColumns::*>, 10> k
 // A log's rows, and what trim and turns are told by.
 struct GliderRows {
   GlideRows glide;
+  std::vector<std::size_t> rows{};  // of the table
   std::vector<double> mass{};
   std::vector<double> roll{};
   std::vector<double> turn{};
@@ -95,6 +96,7 @@ GliderRows rows_of(const log::Table& table, const GliderColumns& columns) {
                              .density = values(columns.density),
                              .sinking = values(columns.sinking),
                              .speed = values(columns.speed)},
+                   .rows = rows,
                    .mass = values(columns.mass),
                    .roll = values(columns.roll),
                    .turn = values(columns.turn)};
@@ -236,7 +238,8 @@ struct ScoredText {
   const std::vector<double>& predicted;
 };
 
-// "vertical speed R² 0.971, 0.012 m/s rms", of the rows from `begin`.
+// "vertical speed R² 0.971, 0.012 m/s rms, 0.010 one row ahead on line", of the rows from `begin`;
+// on line the mean of the last errors is taken off.
 std::string score_text(const GlideRows& rows, const GlideParameters& parameters,
                        std::size_t begin) {
   const GlideMotion motion = glide(rows, parameters);
@@ -247,19 +250,36 @@ std::string score_text(const GlideRows& rows, const GlideParameters& parameters,
     std::vector<double> y;
     std::vector<double> f;
     double squares = 0.0;
-    for (std::size_t i = begin; i < measured.size(); ++i) {
-      if (std::isfinite(measured[i])) {
+    double squares_on_line = 0.0;
+    double bias = 0.0;
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (!std::isfinite(measured[i])) {
+        continue;
+      }
+      const double ahead = measured[i] - predicted[i] - bias;
+      bias += ahead / kTuning.bias_rows;
+      if (i >= begin) {
         y.push_back(measured[i]);
         f.push_back(predicted[i]);
         squares += (y.back() - f.back()) * (y.back() - f.back());
+        squares_on_line += ahead * ahead;
       }
     }
     if (!y.empty()) {
-      texts.push_back(fmt::format("{} R² {:.3f}, {:.4f} m/s rms", name, study::r_squared(y, f),
-                                  std::sqrt(squares / static_cast<double>(y.size()))));
+      const auto count = static_cast<double>(y.size());
+      texts.push_back(fmt::format("{} R² {:.3f}, {:.4f} m/s rms, {:.4f} one row ahead on line",
+                                  name, study::r_squared(y, f), std::sqrt(squares / count),
+                                  std::sqrt(squares_on_line / count)));
     }
   }
   return join_text(texts, "; ");
+}
+
+// The first row of the second half of the time.
+std::size_t half_of(const GlideRows& rows) {
+  const double middle = 0.5 * (rows.times_s.front() + rows.times_s.back());
+  return static_cast<std::size_t>(std::ranges::lower_bound(rows.times_s, middle) -
+                                  rows.times_s.begin());
 }
 
 // Runs `score`; where rows don't suffice there is no remark.
@@ -277,9 +297,7 @@ void remark_on_scores(const std::vector<GliderLog>& logs, const std::vector<Glid
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const GlideRows& own = rows[i].glide;
     remark(table, [&] {
-      const double middle = 0.5 * (own.times_s.front() + own.times_s.back());
-      const auto half = static_cast<std::size_t>(std::ranges::lower_bound(own.times_s, middle) -
-                                                 own.times_s.begin());
+      const std::size_t half = half_of(own);
       const std::array first{part_of(own, 0, half)};
       return logs[i].mission + ", second half after learning the first: " +
              score_text(own, fit_glide(first, first_glide(), all).parameters, half);
@@ -424,6 +442,39 @@ HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumn
                   common.parameters[GlidePlace::attack]));
   remark_on_scores(logs, rows, columns, table);
   return table;
+}
+
+std::vector<log::Table> glide_tables(const std::vector<GliderLog>& logs,
+                                     const GliderColumns& columns) {
+  std::vector<log::Table> tables;
+  for (const GliderLog& log : logs) {
+    const GliderRows rows = rows_of(log.table, columns);
+    const std::size_t half = half_of(rows.glide);
+    const std::array first{part_of(rows.glide, 0, half)};
+    log::Table& table = tables.emplace_back();
+    table.source = log.table.source;
+    table.names = log.table.names;
+    for (const std::vector<double>& column : log.table.columns) {
+      std::vector<double>& values = table.columns.emplace_back();
+      std::ranges::transform(rows.rows, std::back_inserter(values),
+                             [&](std::size_t row) { return column[row]; });
+    }
+    for (std::size_t row = 0; row < rows.rows.size(); ++row) {
+      table.lines.push_back(row + 2);
+    }
+    try {
+      const GlideMotion motion =
+          glide(rows.glide, fit_glide(first, first_glide(), common_places(columns)).parameters);
+      table.names.insert(table.names.end(), {"glide_sinking", "glide_speed", "second_half"});
+      table.columns.push_back(motion.sinking);
+      table.columns.push_back(motion.speed);
+    } catch (const InputError& error) {
+      throw InputError({.file = log.table.source, .line = 0, .field = {}}, error.what());
+    }
+    std::vector<double>& held = table.columns.emplace_back(rows.rows.size(), 1.0);
+    std::fill_n(held.begin(), half, 0.0);
+  }
+  return tables;
 }
 
 }  // namespace kelpie::health

@@ -47,4 +47,11 @@ struct GliderLog {
 /// log.
 HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumns& columns);
 
+/// Each log's rows with pitch, ballast and depth, with all columns and three more: glide_sinking
+/// and glide_speed, by the glider that the first half of the log tells, and second_half, 1 in the
+/// rows of the second half. For `kelpie learn`, which learns the rest. Throws InputError naming the
+/// log.
+std::vector<log::Table> glide_tables(const std::vector<GliderLog>& logs,
+                                     const GliderColumns& columns);
+
 }  // namespace kelpie::health

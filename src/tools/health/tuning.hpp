@@ -21,6 +21,8 @@ inline constexpr struct Tuning {
   double discrepancy = 0.025;
   double most_correlation = 0.8;  ///< of the residuals of neighbouring episodes
 
+  double bias_rows = 10.0;  ///< whose errors correct a glider's speeds on line
+
   // Dives.
   double dive_share = 0.2;     ///< of the greatest depth: a dive goes deeper
   double surface_share = 0.1;  ///< of the greatest depth: between dives

@@ -98,11 +98,19 @@ TEST_F(Health, SaysWhatChangedBetweenTwoMissionsOfAGlider) {
     GTEST_SKIP() << "the glider's logs are not here";
   }
   succeeded(run("health " + first.string() + " " + second.string() +
-                " --glider pitch=pitch,ballast=ballast,depth=depth,sinking=w,mass=lin --out out"));
+                " --glider pitch=pitch,ballast=ballast,depth=depth,sinking=w,mass=lin --glide-csv "
+                "--out out"));
   const nlohmann::json card = parsed("out/health.json")["vehicles"][0];
   const nlohmann::json& buoyancy = change(card, "net buoyancy at ballast 0");
   EXPECT_NE(buoyancy["kind"], "constant") << buoyancy;
   EXPECT_GT(buoyancy["change"]["interval90"][0].get<double>(), 50.0) << buoyancy;
+  const std::string learned = "learn out/sea035_12_glide.csv --time time --targets w --inputs ";
+  const std::string how = " --split column:second_half --align none --out learned";
+  const auto r2 = [&](const std::string& inputs) {
+    succeeded(run(learned + inputs + how));
+    return parsed("learned/result.json")["axes"][0]["r2"].get<double>();
+  };
+  EXPECT_GT(r2("pitch,ballast,depth,lin,glide_sinking"), 0.98);
 }
 
 }  // namespace
