@@ -108,7 +108,7 @@ TEST_F(Health, SaysWhatChangedBetweenTwoMissionsOfAGlider) {
   const std::string how = " --split column:second_half --align none --out learned";
   const auto r2 = [&](const std::string& inputs) {
     succeeded(run(learned + inputs + how));
-    return parsed("learned/result.json")["axes"][0]["r2"].get<double>();
+    return parsed("learned/result.json")["axes"][0]["r2"]["final"].get<double>();
   };
   EXPECT_GT(r2("pitch,ballast,depth,lin,glide_sinking"), 0.98);
 }
