@@ -251,12 +251,12 @@ void run_health(const HealthArguments& options) {
       }
     }
   }
-  const file::OutFolder out = take_out_folder(options.out, names, inputs);
   std::vector<health::HealthCard> cards;
   file::FileSet files;
   for (const auto& [vehicle, missions] : fleet) {
     cards.push_back(card_of(options, vehicle, missions, baselines, files));
   }
+  const file::OutFolder out = take_out_folder(options.out, names, inputs);
   files[kHealthJson] = health::cards_json(cards);
   files[kHealthHtml] = report::health_html(cards);
   file::write_files_whole(out.path(), files);
