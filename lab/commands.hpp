@@ -25,6 +25,7 @@ void add_benchmark(CLI::App& app);
 void add_control(CLI::App& app);
 void add_reckoning(CLI::App& app);
 void add_diagnose(CLI::App& app);
+void add_health(CLI::App& app);
 void add_hostile(CLI::App& app);
 void add_identify(CLI::App& app);
 void add_plan(CLI::App& app);

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   kelpie::lab::add_control(app);
   kelpie::lab::add_reckoning(app);
   kelpie::lab::add_diagnose(app);
+  kelpie::lab::add_health(app);
   kelpie::lab::add_hostile(app);
   kelpie::lab::add_identify(app);
   kelpie::lab::add_plan(app);

@@ -53,10 +53,11 @@ const Building kTools{
     {"format", {"study", "log", "vehicle", "file"}},
     {"fmu", {"format", "file"}},
     {"fleet", {"format", "study", "jobs", "log", "file"}},
-    {"report", {"fleet", "format", "study", "log", "bag", "chart", "file"}},
+    {"health", {"study", "log", "file"}},
+    {"report", {"fleet", "health", "format", "study", "log", "bag", "chart", "file"}},
     {"cli",
-     {"report", "fmu", "fleet", "format", "study", "jobs", "log", "bag", "vehicle", "chart",
-      "file"}},
+     {"report", "fmu", "fleet", "health", "format", "study", "jobs", "log", "bag", "vehicle",
+      "chart", "file"}},
 };
 const Building kLive{
     {"live", {"format", "study", "log", "bag", "chart", "file"}},

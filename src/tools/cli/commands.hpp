@@ -17,6 +17,7 @@ void add_completion(CLI::App& app);
 void add_config(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_export(CLI::App& app);
+void add_health(CLI::App& app);
 void add_identify(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_learn(CLI::App& app);

@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   kelpie::cli::add_config(app);
   kelpie::cli::add_simulate(app);
   kelpie::cli::add_vehicle(app);
+  kelpie::cli::add_health(app);
   kelpie::cli::add_identify(app);
   kelpie::cli::add_plan(app);
   kelpie::cli::add_inspect(app);

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/log_options.hpp"
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "core/text.hpp"
+#include "file/atomic_file.hpp"
+#include "fleet/log_pattern.hpp"
+#include "health/card.hpp"
+#include "health/card_json.hpp"
+#include "health/factors.hpp"
+#include "health/gliders.hpp"
+#include "kelpie/core/error.hpp"
+#include "motion/states.hpp"
+#include "report/health_report.hpp"
+#include "study/alignment.hpp"
+
+namespace kelpie::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kHealthJson = "health.json";
+constexpr const char* kHealthHtml = "health.html";
+constexpr const char* kGlideEnding = "_glide.csv";
+constexpr double kUnixTime = 1e8;  // [s]: a time stamp later than this counts from 1970
+
+struct HealthArguments : PlanOptions {
+  std::vector<std::string> logs;
+  std::vector<std::string> since;  // NAME=DATE
+  std::vector<std::string> dates;
+  std::string depth;
+  std::string volts;
+  std::string density;
+  std::vector<std::string> glider;  // NAME=COLUMN
+  bool writes_glides = false;
+  std::string out = "out/health";
+  AnswerOptions answer;
+};
+
+// A log of a vehicle, before it is read.
+struct Mission {
+  std::string file;
+  std::string name;
+  double day = NAN;  // of the log's time 0, since 1970
+};
+using Fleet = std::map<std::string, std::vector<Mission>>;
+
+Fleet find_logs(const HealthArguments& options) {
+  Fleet fleet;
+  std::size_t count = 0;
+  const auto add = [&](const fs::path& file, const std::string& vehicle, std::string name) {
+    if (name.empty()) {
+      name = file.stem().string();
+    }
+    const double day = count < options.dates.size()
+                           ? health::day_of(options.dates[count], "--dates")
+                           : health::day_in_name(file.filename().string());
+    fleet[vehicle.empty() ? "vehicle" : vehicle].push_back({file.string(), std::move(name), day});
+    ++count;
+  };
+  for (const std::string& text : options.logs) {
+    if (fs::exists(text) || text.find_first_of("*?[{") == std::string::npos) {
+      add(text, "", "");
+      continue;
+    }
+    std::vector<fleet::MatchedLog> found = fleet::LogPattern(text).find(fs::current_path());
+    require(!found.empty(), "LOG", "'" + text + "' matches no file");
+    std::ranges::sort(found, {}, &fleet::MatchedLog::file);
+    for (const fleet::MatchedLog& log : found) {
+      add(log.file, log.vehicle, log.mission);
+    }
+  }
+  require(options.dates.empty() || options.dates.size() == count, "--dates",
+          fmt::format("{} dates for {} logs", options.dates.size(), count));
+  return fleet;
+}
+
+// The first log of a vehicle settles columns and alignment of all.
+struct Reader {
+  const HealthArguments& options;
+  std::optional<study::LearnPlan> first{};
+
+  log::Dataset read(const std::string& file) {
+    PlanOptions one = options;
+    one.log.source.path = file;
+    one.split = "none";
+    for (const std::string& slow : {options.depth, options.volts, options.density}) {
+      if (!slow.empty()) {
+        one.log.also.push_back(slow);
+      }
+    }
+    if (!first) {
+      first = plan_log(one).plan;
+      return first->data;
+    }
+    one.log.inputs = first->data.input_names;
+    one.log.targets = first->data.target_names;
+    if (!first->current.current.none()) {
+      one.log.inputs.push_back(first->current.current.heading);
+    }
+    const std::optional<file::TomlNode> root =
+        one.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(one.config));
+    const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
+    log::Dataset data = open_log(one.log.source, config, one.log.over(config.roles)).dataset();
+    AlignmentResult known = first->alignment;
+    known.alignment.water = {};
+    return study::plan_learning(std::move(data), study::parse_split("none", 1), first->settings,
+                                one.align, known, false, one.current)
+        .data;
+  }
+};
+
+// Days of the logs' time 0, from their first and last times [s]. Without dates, logs follow each
+// other at once.
+struct LogDays {
+  std::vector<double> days{};
+  bool is_dated = false;
+};
+
+LogDays days_of(const std::vector<Mission>& missions,
+                const std::vector<std::pair<double, double>>& times_s) {
+  const bool in_stamps =
+      std::ranges::all_of(times_s, [](const auto& times) { return times.first > kUnixTime; });
+  LogDays found;
+  found.is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
+                     return std::isfinite(mission.day);
+                   });
+  double end = 0.0;
+  for (std::size_t i = 0; i < missions.size(); ++i) {
+    found.days.push_back(in_stamps        ? 0.0
+                         : found.is_dated ? missions[i].day
+                                          : end - times_s[i].first / health::kSecondsPerDay);
+    end = found.days.back() + times_s[i].second / health::kSecondsPerDay;
+  }
+  return found;
+}
+
+std::vector<health::Baseline> baselines_of(const HealthArguments& options) {
+  std::vector<health::Baseline> baselines;
+  for (const std::string& text : options.since) {
+    const std::size_t equals = text.find('=');
+    require(equals != std::string::npos && equals > 0, "--since",
+            "'" + text + "' is no NAME=DATE, as in cleaning=2026-03-03");
+    baselines.push_back(
+        {text.substr(0, equals), health::day_of(text.substr(equals + 1), "--since")});
+  }
+  return baselines;
+}
+
+health::HealthTable judge_drives(const HealthArguments& options,
+                                 const std::vector<Mission>& missions, bool& is_dated) {
+  Reader reader{options};
+  std::vector<health::DriveLog> logs;
+  std::vector<std::pair<double, double>> times_s;
+  for (const Mission& mission : missions) {
+    logs.push_back({.data = reader.read(mission.file), .mission = mission.name});
+    times_s.emplace_back(logs.back().data.times_s.front(), logs.back().data.times_s.back());
+  }
+  const LogDays found = days_of(missions, times_s);
+  is_dated = found.is_dated;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    logs[i].day = found.days[i];
+  }
+  const log::Dataset& first = logs.front().data;
+  health::DriveColumns columns{
+      .velocities = find_states(reader.first->settings.shared.states, first.input_names,
+                                first.target_names.size()),
+      .volts = options.volts,
+      .density = options.density,
+      .depth = options.depth};
+  if (columns.velocities.empty()) {
+    throw InputError({.file = first.source, .line = 0, .field = {}},
+                     "no input is known as a velocity; name the velocities by --set "
+                     "states=SURGE,SWAY,YAW, in the order of the targets");
+  }
+  return health::judge_drives(logs, columns);
+}
+
+// `files`: gets the logs with the glider's speeds, where wanted.
+health::HealthTable judge_gliders(const HealthArguments& options,
+                                  const std::vector<Mission>& missions, bool& is_dated,
+                                  file::FileSet& files) {
+  const health::GliderColumns columns = health::glider_columns(options.glider);
+  const log::LogConfig config = log::read_log_config(options.config);
+  std::vector<health::GliderLog> logs;
+  std::vector<std::pair<double, double>> times_s;
+  for (const Mission& mission : missions) {
+    log::Roles roles = options.log.over(config.roles);
+    roles.inputs = health::columns_of(columns);
+    roles.time = columns.time;
+    log::LogSource source = options.log.source;
+    source.path = mission.file;
+    log::Table table = open_log(source, config, roles).table;
+    const std::vector<double>& times = table.columns[table.find(columns.time)];
+    require(table.rows() > 1, mission.file, "has fewer than two rows");
+    times_s.emplace_back(times.front(), times.back());
+    logs.push_back({.table = std::move(table), .mission = mission.name});
+  }
+  const LogDays found = days_of(missions, times_s);
+  is_dated = found.is_dated;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    logs[i].day = found.days[i];
+  }
+  health::HealthTable judged = health::judge_gliders(logs, columns);
+  if (options.writes_glides) {
+    const std::vector<log::Table> tables = health::glide_tables(logs, columns);
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      files[logs[i].mission + kGlideEnding] = log::csv_text(tables[i]);
+    }
+  }
+  return judged;
+}
+
+health::HealthCard card_of(const HealthArguments& options, const std::string& vehicle,
+                           const std::vector<Mission>& missions,
+                           const std::vector<health::Baseline>& baselines, file::FileSet& files) {
+  bool is_dated = false;
+  health::HealthTable table = options.glider.empty()
+                                  ? judge_drives(options, missions, is_dated)
+                                  : judge_gliders(options, missions, is_dated, files);
+  require(is_dated || baselines.empty(), "--since",
+          "needs the dates of the logs: in their names, in their stamps, or by --dates");
+  return health::make_card(vehicle, is_dated, std::move(table), baselines);
+}
+
+void run_health(const HealthArguments& options) {
+  options.answer.begin();
+  const std::vector<health::Baseline> baselines = baselines_of(options);
+  const Fleet fleet = find_logs(options);
+  require(!options.writes_glides || !options.glider.empty(), "--glide-csv", "needs --glider");
+  std::vector<std::string> inputs{options.config};
+  std::vector<std::string> names{kHealthJson, kHealthHtml};
+  for (const auto& [vehicle, missions] : fleet) {
+    for (const Mission& mission : missions) {
+      inputs.push_back(mission.file);
+      if (options.writes_glides) {
+        names.push_back(mission.name + kGlideEnding);
+      }
+    }
+  }
+  std::vector<health::HealthCard> cards;
+  file::FileSet files;
+  for (const auto& [vehicle, missions] : fleet) {
+    cards.push_back(card_of(options, vehicle, missions, baselines, files));
+  }
+  const file::OutFolder out = take_out_folder(options.out, names, inputs);
+  files[kHealthJson] = health::cards_json(cards);
+  files[kHealthHtml] = report::health_html(cards);
+  file::write_files_whole(out.path(), files);
+  Answer answer{.verdict = report::health_verdict(cards),
+                .tables = report::health_tables(cards),
+                .document = options.answer.json ? health::cards_json(cards) : "",
+                .files = {},
+                .next = {}};
+  answer.add_files(files, out.path());
+  give(answer, options.answer);
+}
+
+}  // namespace
+
+void add_health(CLI::App& app) {
+  const auto [command, options] = add_command(
+      app, "health", "Tell what changed on a vehicle from dive to dive, since when and how fast",
+      run_health);
+  add_files(command, "logs", options->logs,
+            "logs of one vehicle; or patterns as in study files, 'dives/{vehicle}/{mission}.csv'");
+  command->get_option("logs")->required();
+  options->log.add_columns_to(*command);
+  add_file(command, "--config", options->config, "TOML configuration with [log] and settings");
+  add_set(command, options->set);
+  add_list(command, "--since", options->since,
+           "days from which changes are counted anew, NAME=DATE: cleaning=2026-03-03");
+  add_list(command, "--dates", options->dates,
+           "days of the logs, in their order; else from the files' names or stamps");
+  command->add_option("--depth", options->depth, "column with the depth: each dive by itself");
+  command->add_option("--volts", options->volts, "column with the supply of the thrusters [V]");
+  command->add_option("--density", options->density, "column with the water's density [kg/m³]");
+  add_list(command, "--glider", options->glider,
+           "columns of a glider's CSV logs, NAME=COLUMN with the names pitch, ballast, depth, "
+           "sinking or speed, and as far as logged time, density, mass, roll, turn");
+  command->add_flag("--glide-csv", options->writes_glides,
+                    "write each glider's log with the speeds of steady gliding, for `learn`");
+  add_align_option(*command, options->align);
+  add_current_option(*command, options->current);
+  add_accept_option(*command, options->accept);
+  add_out(command, options->out, "folder for health.json and health.html");
+  options->answer.add_to(*command, kHealthJson);
+  add_examples(command, "health dives/2026-*.csv --since cleaning=2026-03-03",
+               "health 'dives/{vehicle}/{mission}.csv' --volts battery");
+}
+
+}  // namespace kelpie::cli

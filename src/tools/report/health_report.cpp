@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/health_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "chart/figure.hpp"
+#include "chart/page.hpp"
+#include "chart/text_table.hpp"
+#include "chart/wording.hpp"
+#include "health/tuning.hpp"
+
+namespace kelpie::report {
+namespace {
+
+using health::Change;
+using health::CourseKind;
+using health::Estimate;
+using health::HealthCard;
+
+constexpr std::size_t kMostEpisodes = 60;  // of a table
+
+std::string baseline_words(const HealthCard& card, const Change& change) {
+  return change.baseline == 0
+             ? ""
+             : fmt::format(" (counted since {})", card.baselines[change.baseline].name);
+}
+
+// The changes that were found, the most certain first.
+std::vector<const Change*> found_changes(const HealthCard& card) {
+  std::vector<const Change*> found;
+  for (const Change& change : card.changes) {
+    if (health::is_found(change.course)) {
+      found.push_back(&change);
+    }
+  }
+  std::ranges::stable_sort(found, [](const Change* a, const Change* b) {
+    return a->baseline != b->baseline ? a->baseline < b->baseline : a->course.nats > b->course.nats;
+  });
+  return found;
+}
+
+std::string span_text(const HealthCard& card) {
+  const health::HealthTable& table = card.table;
+  double hours = 0.0;
+  for (const health::Episode& episode : table.episodes) {
+    hours += episode.hours;
+  }
+  return fmt::format("{}: {} episodes, {:.3g} h of logs, {} to {}", card.vehicle,
+                     table.episodes.size(), hours,
+                     health::day_text(card, table.episodes.front().day),
+                     health::day_text(card, table.episodes.back().day));
+}
+
+// What no significant change bounds: the widest of the intervals since deployment.
+std::string quiet_text(const HealthCard& card) {
+  std::vector<std::string> quiet;
+  for (const Change& change : card.changes) {
+    if (change.baseline == 0 && change.course.kind == CourseKind::constant) {
+      quiet.push_back(fmt::format("{} ({})", card.table.quantities[change.quantity].name,
+                                  health::change_size(card, change)));
+    }
+  }
+  return quiet.empty() ? "" : "No change: " + chart::list_text(quiet) + ".";
+}
+
+std::string value_text(const health::Quantity& quantity, const Estimate& estimate) {
+  if (!(estimate.error > 0.0)) {
+    return "–";
+  }
+  const double scale = quantity.unit.empty() ? 100.0 : 1.0;
+  const double half = scale * health::kNormal90 * estimate.error;
+  const int places = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6);
+  return fmt::format("{:.{}f} ± {:.{}f}", scale * estimate.value, places, half, places);
+}
+
+chart::TextTable episodes_view(const HealthCard& card) {
+  const health::HealthTable& table = card.table;
+  chart::TextTable view{"By episode", {"episode", "day"}, {}};
+  view.left = {0, 1};
+  for (const health::Quantity& quantity : table.quantities) {
+    view.head.push_back(quantity.name + "\n[" + (quantity.unit.empty() ? "%" : quantity.unit) +
+                        "]");
+  }
+  const std::size_t first =
+      table.episodes.size() > kMostEpisodes ? table.episodes.size() - kMostEpisodes : 0;
+  for (std::size_t i = first; i < table.episodes.size(); ++i) {
+    view.rows.push_back({chart::shortened(table.episodes[i].name, chart::kLongestName),
+                         card.is_dated ? health::day_text(card, table.episodes[i].day)
+                                       : fmt::format("{:.2f}", table.episodes[i].day)});
+    for (std::size_t k = 0; k < table.quantities.size(); ++k) {
+      view.rows.back().push_back(value_text(table.quantities[k], table.estimates[i][k]));
+    }
+  }
+  view.notes.push_back(
+      "Values with half of their 90 % intervals. Per cent: of the mean over all episodes.");
+  if (first > 0) {
+    view.notes.push_back(fmt::format("The last {} of {}; health.json has all.", kMostEpisodes,
+                                     table.episodes.size()));
+  }
+  return view;
+}
+
+chart::TextTable changes_view(const HealthCard& card) {
+  chart::TextTable view{"Changes", {"quantity", "since", "found", "evidence\n[nats]"}, {}};
+  view.left = {0, 1, 2};
+  for (const Change& change : card.changes) {
+    view.rows.push_back({card.table.quantities[change.quantity].name,
+                         card.baselines[change.baseline].name, health::change_text(card, change),
+                         fmt::format("{:.1f}", change.course.nats)});
+  }
+  view.notes.push_back(fmt::format(
+      "± is half of a 90 % interval. Found: evidence above {:g} nats, beyond what the search over "
+      "all dates finds by chance.",
+      health::kTuning.least_nats));
+  view.whole = true;
+  return view;
+}
+
+// Points of the fitted course at an episode's day.
+double course_at(const health::Course& course, double day) {
+  if (!health::is_found(course)) {
+    return course.before.value;
+  }
+  if (course.kind == CourseKind::drift) {
+    return course.before.value + course.rate.value * std::max(0.0, day - course.since_day);
+  }
+  return course.before.value + (day >= course.since_day ? course.change.value : 0.0);
+}
+
+std::string quantity_figure(const HealthCard& card, const Change& change) {
+  const health::Quantity& quantity = card.table.quantities[change.quantity];
+  const health::Series series = health::series_of(card.table, change.quantity);
+  const double scale = quantity.unit.empty() ? 100.0 : 1.0;
+  const double first = card.table.episodes.front().day;
+  std::vector<chart::Point> points;
+  std::vector<chart::Point> course;
+  std::vector<double> halves;
+  for (std::size_t i = 0; i < series.days.size(); ++i) {
+    const double x = series.days[i] - first;
+    points.push_back({x, scale * series.estimates[i].value});
+    halves.push_back(scale * health::kNormal90 * series.estimates[i].error);
+    course.push_back({x, scale * course_at(change.course, series.days[i])});
+  }
+  chart::Figure figure(
+      {card.is_dated ? "days since " + health::day_text(card, first) : "days", {}},
+      {fmt::format("{} [{}]", quantity.name, quantity.unit.empty() ? "%" : quantity.unit), {}},
+      quantity.name + " from episode to episode");
+  figure.band(points, halves, 0, "90 % interval");
+  figure.markers(points, 0, "estimate");
+  if (change.course.kind != CourseKind::unknown) {
+    figure.line(course, 1, "course");
+  }
+  for (std::size_t i = 1; i < card.baselines.size(); ++i) {
+    figure.mark(card.baselines[i].day - first, card.baselines[i].name);
+  }
+  if (health::is_found(change.course)) {
+    figure.mark(change.course.since_day - first, "change");
+  }
+  return figure.html(health::change_text(card, change) + ".");
+}
+
+std::string health_figures(const HealthCard& card) {
+  std::vector<std::string> all;
+  for (const Change& change : card.changes) {
+    if (change.baseline == 0 && health::series_of(card.table, change.quantity).days.size() > 1) {
+      all.push_back(quantity_figure(card, change));
+    }
+  }
+  return chart::panels(all);
+}
+
+std::size_t changed_vehicles(const std::vector<HealthCard>& cards) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      cards, [](const HealthCard& card) { return !found_changes(card).empty(); }));
+}
+
+std::string health_headline(const std::vector<HealthCard>& cards) {
+  if (cards.size() > 1) {
+    return fmt::format("{} of {} vehicles changed.", changed_vehicles(cards), cards.size());
+  }
+  const std::vector<const Change*> found = found_changes(cards.front());
+  return found.empty() ? "No significant change was found."
+                       : health::change_text(cards.front(), *found.front()) + ".";
+}
+
+}  // namespace
+
+std::string health_verdict(const std::vector<HealthCard>& cards) {
+  std::string text;
+  for (const HealthCard& card : cards) {
+    text += chart::wrapped(chart::printable(span_text(card))) + "\n";
+    const std::vector<const Change*> found = found_changes(card);
+    for (const Change* change : found) {
+      text += chart::wrapped("  " + chart::printable(health::change_text(card, *change) +
+                                                     baseline_words(card, *change))) +
+              "\n";
+    }
+    if (found.empty()) {
+      text += "  no significant change\n";
+    }
+    if (const std::string quiet = quiet_text(card); !quiet.empty() && cards.size() == 1) {
+      text += chart::wrapped(chart::printable(quiet)) + "\n";
+    }
+    for (const std::string& remark : card.table.remarks) {
+      text += chart::wrapped(chart::printable(remark)) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string health_tables(const std::vector<HealthCard>& cards) {
+  std::string text;
+  for (const HealthCard& card : cards) {
+    text += chart::printable(span_text(card)) + "\n\n" +
+            chart::tables_text({changes_view(card), episodes_view(card)});
+  }
+  return text;
+}
+
+std::string health_html(const std::vector<HealthCard>& cards) {
+  std::string opening =
+      chart::paragraph(
+          "over", "Health of " + (cards.size() == 1 ? cards.front().vehicle
+                                                    : fmt::format("{} vehicles", cards.size()))) +
+      chart::heading(1, health_headline(cards));
+  std::vector<chart::Section> sections;
+  std::vector<chart::Section> values;
+  for (const HealthCard& card : cards) {
+    opening += chart::paragraph("", span_text(card) + ".");
+    for (const Change* change : found_changes(card)) {
+      opening += chart::paragraph(
+          "", health::change_text(card, *change) + baseline_words(card, *change) + ".");
+    }
+    for (const std::string& remark : card.table.remarks) {
+      opening += chart::paragraph("note", remark + ".");
+    }
+    sections.push_back(
+        {card.vehicle, health_figures(card) + chart::html_table(changes_view(card))});
+    values.push_back({card.vehicle + " by episode", chart::html_table(episodes_view(card)), true});
+  }
+  std::ranges::move(values, std::back_inserter(sections));
+  return chart::html_page("kelpie: health", opening, sections);
+}
+
+}  // namespace kelpie::report

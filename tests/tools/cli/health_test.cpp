@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "cli/command.hpp"
+#include "support.hpp"
+
+namespace kelpie::health_test {
+namespace {
+
+using testing::succeeded;
+
+class Health : public testing::CommandTest {
+ protected:
+  // A dive of the simulated Dagon, with a factor on its drag.
+  void dive(const std::string& name, int seed, double drag) const {
+    const std::string factor = std::to_string(drag);
+    std::string all = factor;
+    for (int axis = 1; axis < 6; ++axis) {
+      all += ", " + factor;
+    }
+    write("scenario.toml", "vehicle = \"" KELPIE_SOURCE_DIR "/vehicles/dagon.toml\"\nseed = " +
+                               std::to_string(seed) +
+                               "\nrate_hz = 4.0\nnoise = \"as_recorded\"\n[[configurations]]\n"
+                               "name = \"it\"\ndamping_factor = [" +
+                               all + "]\n[[phases]]\nconfiguration = \"it\"\nduration_s = 300.0\n");
+    succeeded(run("simulate scenario.toml --out " + name));
+  }
+
+  const nlohmann::json& change(const nlohmann::json& card, const std::string& quantity,
+                               const std::string& baseline = "deployment") const {
+    for (const nlohmann::json& one : card["changes"]) {
+      if (one["quantity"] == quantity && one["baseline"] == baseline) {
+        return one;
+      }
+    }
+    throw std::runtime_error("no " + quantity);
+  }
+};
+
+// One vehicle that fouls from the fifth dive on, one that does not.
+TEST_F(Health, TellsWhichVehicleOfAFleetFoulsSinceWhenAndHowFast) {
+  for (int i = 1; i <= 9; ++i) {
+    const std::string date = "2026-03-0" + std::to_string(i) + ".csv";
+    dive("a_" + date, i, 1.0 + 0.03 * std::max(0, i - 4));
+    dive("b_" + date, 20 + i, 1.0);
+  }
+  const testing::Outcome outcome = succeeded(
+      run("health '{vehicle}_{mission}.csv' --align none --since cleaning=2026-03-05 --out out"));
+  EXPECT_NE(outcome.out.find("surge drag +1"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("March 2026, "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no significant change"), std::string::npos) << outcome.out;
+  const nlohmann::json cards = parsed("out/health.json")["vehicles"];
+  ASSERT_EQ(cards.size(), 2U);
+  const nlohmann::json& drag = change(cards[0], "surge drag");
+  EXPECT_EQ(drag["kind"], "drift") << drag;
+  EXPECT_NEAR(drag["change"]["value"].get<double>() / drag["before"]["value"].get<double>(), 0.15,
+              0.2 * 0.15);  // the allowance of kTuning.discrepancy
+  EXPECT_NEAR(drag["rate_per_day"]["value"].get<double>(), 0.03, 0.2 * 0.03 + 0.001);
+  EXPECT_LE(drag["change"]["interval90"][0], drag["change"]["value"]);
+  EXPECT_EQ(change(cards[0], "surge drag", "cleaning")["kind"], "drift");
+  for (const char* const thruster : {"th1 gain", "th2 gain", "th3 gain"}) {
+    EXPECT_EQ(change(cards[0], thruster)["kind"], "constant") << thruster;
+  }
+  for (const nlohmann::json& one : cards[1]["changes"]) {
+    EXPECT_TRUE(one["kind"] == "constant" || one["kind"] == "unknown") << one;
+  }
+  EXPECT_NE(content("out/health.html").find("1 of 2 vehicles changed"), std::string::npos);
+}
+
+TEST_F(Health, RefusesWhatIsNoDateNoLogAndNoColumn) {
+  dive("dive.csv", 1, 1.0);
+  expect_nothing_written("health dive.csv --since cleaning", "NAME=DATE");
+  expect_nothing_written("health dive.csv --since cleaning=yesterday", "is no date");
+  expect_nothing_written("health dive.csv --since cleaning=2026-03-03", "--dates");
+  expect_nothing_written("health dive.csv --dates 2026-03-03,2026-03-04", "2 dates for 1 logs");
+  expect_nothing_written("health 'no*.csv'", "matches no file");
+  expect_nothing_written("health dive.csv --volts nothing", "nothing");
+  expect_nothing_written("health dive.csv --glider pitch=p", "needs pitch, ballast and depth");
+  expect_nothing_written("health dive.csv --glider wing=p", "is no NAME=COLUMN");
+}
+
+// A log that is too short for a factor says so in place of a number.
+TEST_F(Health, OneDiveIsATableWithoutAVerdict) {
+  dive("dive.csv", 1, 1.0);
+  succeeded(run("health dive.csv --align none --out out"));
+  const nlohmann::json card = parsed("out/health.json")["vehicles"][0];
+  EXPECT_EQ(card["changes"][0]["kind"], "unknown");
+  EXPECT_NEAR(card["episodes"][0]["estimates"]["surge drag"]["value"].get<double>(), 1.0, 0.05);
+}
+
+TEST_F(Health, SaysWhatChangedBetweenTwoMissionsOfAGlider) {
+  const std::filesystem::path first = testing::data_file("vehicles/sea035_10.csv");
+  const std::filesystem::path second = testing::data_file("vehicles/sea035_12.csv");
+  if (first.empty() || second.empty()) {
+    GTEST_SKIP() << "the glider's logs are not here";
+  }
+  succeeded(run("health " + first.string() + " " + second.string() +
+                " --glider pitch=pitch,ballast=ballast,depth=depth,sinking=w,mass=lin --glide-csv "
+                "--out out"));
+  const nlohmann::json card = parsed("out/health.json")["vehicles"][0];
+  const nlohmann::json& buoyancy = change(card, "net buoyancy at ballast 0");
+  EXPECT_NE(buoyancy["kind"], "constant") << buoyancy;
+  EXPECT_GT(buoyancy["change"]["interval90"][0].get<double>(), 50.0) << buoyancy;
+  const std::string learned = "learn out/sea035_12_glide.csv --time time --targets w --inputs ";
+  const std::string how = " --split column:second_half --align none --out learned";
+  const auto r2 = [&](const std::string& inputs) {
+    succeeded(run(learned + inputs + how));
+    return parsed("learned/result.json")["axes"][0]["r2"]["final"].get<double>();
+  };
+  EXPECT_GT(r2("pitch,ballast,depth,lin,glide_sinking"), 0.98);
+}
+
+}  // namespace
+}  // namespace kelpie::health_test
