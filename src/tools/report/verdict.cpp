@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "chart/wording.hpp"
@@ -73,6 +74,15 @@ std::string learned_line(const study::StreamResult& result) {
   return text + "\n";
 }
 
+// Whether a named cause tells the same change already.
+bool is_named(const study::ChangeFound& change, std::span<const Finding> findings) {
+  return change.recalled == 0 && change.withdrawn == 0 &&
+         std::ranges::any_of(findings, [&](const Finding& finding) {
+           return finding.state == FindingState::named &&
+                  std::abs(finding.since_s - change.since_s) <= kTuning.same_change_s;
+         });
+}
+
 }  // namespace
 
 std::vector<std::string> input_lines(const study::StreamResult& result) {
@@ -124,6 +134,9 @@ std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
   std::vector<std::string> lines = study::diagnosis_lines(result);
   for (const study::AxisResult& axis : result.axes) {
     for (const study::ChangeFound& change : axis.changes) {
+      if (is_named(change, result.diagnosis.findings)) {
+        continue;
+      }
       lines.push_back(fmt::format("since {} s: {} of {} {}{}", chart::time_text(change.since_s),
                                   change.recalled > 0 ? "a past model" : "another model",
                                   report::name_of(axis),

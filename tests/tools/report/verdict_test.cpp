@@ -96,6 +96,21 @@ TEST(Verdict, AChangeIsToldAndManyAreCounted) {
   EXPECT_TRUE(has(text, "vehicle: and 14 more")) << text;
 }
 
+TEST(Verdict, ANamedChangeIsToldOnce) {
+  study::StreamResult result = two_axes();
+  result.axes[1].changes = {{.samples = 1, .time_s = 100.0, .since_s = 90.5},
+                            {.samples = 2, .time_s = 300.0, .since_s = 290.0}};
+  Finding finding;
+  finding.since_s = 92.0;
+  finding.state = FindingState::named;
+  finding.count = 1;
+  finding.causes[0] = {.kind = CauseKind::thruster, .place = 0, .size = 0.5};
+  result.diagnosis.findings = {finding};
+  const std::string text = report::verdict_text(result);
+  EXPECT_FALSE(has(text, "since 90.5 s: another model")) << text;
+  EXPECT_TRUE(has(text, "since 290 s: another model")) << "for no named cause";
+}
+
 TEST(Verdict, LinesFitAHundredColumns) {
   study::StreamResult result = two_axes();
   result.commands.clear();
