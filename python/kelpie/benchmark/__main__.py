@@ -11,12 +11,13 @@ import resource
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Optional
 
 from ._entries import Entry, builtin_entries, load_entry
 from ._fetch import PUBLIC, fetch
-from ._manifest import ManifestError, read_manifest
+from ._manifest import TRACKS, ManifestError, read_manifest
 from ._page import page, table
 from ._runner import Limits, run
 
@@ -50,6 +51,8 @@ def _parser() -> argparse.ArgumentParser:
                      help="built-in entries, separated by commas; naive rows always take part; "
                           "'none' for naive rows alone")
     one.add_argument("--data", metavar="NAMES", help="data sets, separated by commas")
+    one.add_argument("--tracks", metavar="NAMES",
+                     help="of those of each data set, separated by commas; else all")
     one.add_argument("--rows", type=_whole, default=Limits.rows,
                      help="rows to learn of each data set, at most (%(default)s)")
     one.add_argument("--seed", type=int, default=Limits.seed, help="(%(default)s)")
@@ -88,6 +91,10 @@ def _run(options: argparse.Namespace) -> int:
     if options.data:
         wanted = _chosen("--data", options.data, names)
         sources = [source for source in sources if source.name in wanted]
+    if options.tracks:
+        tracks = _chosen("--tracks", options.tracks, TRACKS)
+        sources = [replace(source, tracks=[track for track in source.tracks if track in tracks])
+                   for source in sources]
     entries = _entries(options.only, options.entry)
     options.out.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
@@ -114,7 +121,7 @@ def _run(options: argparse.Namespace) -> int:
 def _command(options: argparse.Namespace) -> str:
     words = ["python3 -m kelpie.benchmark run", *(path.name for path in options.manifest)]
     words += [f"--entry {place}" for place in options.entry]
-    words += [f"--{name} {getattr(options, name)}" for name in ("only", "data")
+    words += [f"--{name} {getattr(options, name)}" for name in ("only", "data", "tracks")
               if getattr(options, name)]
     words += [f"--{name} {getattr(options, name)}" for name in ("rows", "seed", "jobs")
               if getattr(options, name) != getattr(Limits, name)]
