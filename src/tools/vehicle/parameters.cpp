@@ -7,6 +7,7 @@
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/setting.hpp"
 #include "motion/signal_names.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/hold.hpp"

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <random>
 #include <vector>
 
 namespace kelpie::member_shares_test {
@@ -122,6 +124,87 @@ TEST(MemberShares, WhatNeverComesTrueCountsLittle) {
   EXPECT_GT(shares.shares()[2], 0.85);
   EXPECT_GT(shares.shares()[0], 0.0);
   EXPECT_NEAR(std::accumulate(shares.shares().begin(), shares.shares().end(), 0.0), 1.0, 1e-12);
+}
+
+// Discounted losses of the shares and of the members, and the bound of their difference
+// (docs/method/committee.md, Weights), computed from shares and errors alone.
+class Regret {
+ public:
+  explicit Regret(std::size_t members) : losses_(members) {}
+
+  void add(std::span<const double> shares, std::span<const double> errors) {
+    double loss = 0.0;
+    double square = 0.0;
+    for (std::size_t k = 0; k < losses_.size(); ++k) {
+      loss += shares[k] * errors[k];
+      square += shares[k] * errors[k] * errors[k];
+      losses_[k] = kKeep * losses_[k] + errors[k];
+    }
+    all_ = kKeep * all_ + loss;
+    blocks_ = kKeep * blocks_ + 1.0;
+    const double usual = all_ / blocks_;
+    const double usual_before = blocks_ > 1.0 ? usual_ : usual;
+    growth_ = kKeep * growth_ + std::max(usual_before - usual, 0.0) / kRate;
+    squares_ = kKeep * squares_ + kRate / usual_before * square / (2.0 * kKeep);
+    usual_ = usual;
+  }
+
+  double value() const { return all_ - *std::ranges::min_element(losses_); }
+  double bound() const {
+    return std::log(static_cast<double>(losses_.size())) * (usual_ / kRate + growth_) + squares_;
+  }
+  double usual() const { return usual_; }
+  double blocks() const { return blocks_; }
+
+ private:
+  static constexpr double kKeep = 0.98;
+  static constexpr double kRate = 0.15;
+  std::vector<double> losses_;
+  double all_ = 0.0;
+  double blocks_ = 0.0;
+  double growth_ = 0.0;
+  double squares_ = 0.0;
+  double usual_ = 0.0;
+};
+
+// Who makes the members' errors knows the shares.
+TEST(MemberShares, RegretAgainstTheBestMemberIsBoundedOnHostileStreams) {
+  using Errors = std::array<double, 6>;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform;
+  const std::vector<std::function<double(int, std::size_t, std::span<const double>)>> streams{
+      [](int, std::size_t k, std::span<const double> shares) {  // the most believed is wrong
+        return k == std::size_t(std::ranges::max_element(shares) - shares.begin()) ? 2.9 : 0.3;
+      },
+      [](int block, std::size_t k, std::span<const double>) {  // the best member changes
+        return k == std::size_t(block / 40) % 6 ? 0.05 : 0.8;
+      },
+      [](int block, std::size_t k,
+         std::span<const double>) {  // errors grow and shrink a hundredfold
+        return (1.0 + 0.2 * double(k)) * (block / 30 % 2 == 0 ? 0.01 : 1.0);
+      },
+      [&](int, std::size_t, std::span<const double>) {  // rare and large
+        return uniform(random) < 0.03 ? 2.9 : 0.1 * uniform(random);
+      },
+  };
+  for (std::size_t s = 0; s < streams.size(); ++s) {
+    Errors first;
+    first.fill(1.0 / 6.0);
+    MemberShares shares(first);
+    Regret regret(first.size());
+    for (int block = 0; block < 600; ++block) {
+      Errors errors{};
+      for (std::size_t k = 0; k < errors.size(); ++k) {
+        errors[k] = streams[s](block, k, shares.shares());
+      }
+      regret.add(shares.shares(), errors);
+      for (std::size_t i = 0; i < MemberShares::kBlock; ++i) {
+        shares.score(errors);
+      }
+      ASSERT_LE(regret.value(), regret.bound() + 1e-9) << "stream " << s << ", block " << block;
+    }
+    EXPECT_LE(regret.value(), 0.5 * regret.usual() * regret.blocks()) << "stream " << s;
+  }
 }
 
 }  // namespace
