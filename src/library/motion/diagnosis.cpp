@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/motion/diagnosis.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
