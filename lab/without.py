@@ -84,11 +84,15 @@ def misplaced(source):
 
 
 def make_tree(tree):
-    """The last commit, configured for the Python package alone."""
-    tree.mkdir(parents=True, exist_ok=True)
-    archive = subprocess.run(["git", "-C", CHECKOUT, "archive", "HEAD"], check=True,
-                             stdout=subprocess.PIPE).stdout
-    subprocess.run(["tar", "-x", "-C", tree], input=archive, check=True)
+    """The last commit, configured for the Python package alone; files that stay are not touched."""
+    def git(folder, *words):
+        return subprocess.run(["git", "-C", folder, *words], check=True, stdout=subprocess.PIPE,
+                              text=True).stdout.strip()
+
+    if not (tree / ".git").exists():
+        subprocess.run(["git", "clone", "-q", "--no-checkout", CHECKOUT, tree], check=True)
+    git(tree, "fetch", "-q")
+    git(tree, "checkout", "-q", "--force", "--detach", git(CHECKOUT, "rev-parse", "HEAD"))
     subprocess.run(["cmake", "--preset", "minimal", "-DKELPIE_BUILD_PYTHON=ON",
                     "-DKELPIE_JOIN_SOURCES=OFF"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
 
@@ -103,6 +107,7 @@ def benchmark(tree, options, out):
     command = [sys.executable, "-m", "kelpie.benchmark", "run", *options.manifest, "--only",
                "kelpie", "--rows", str(options.rows), "--tracks", "anytime,changes,hostile",
                "--jobs", str(options.jobs), "--out", out]
+    command += ["--data", options.data] if options.data else []
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL,
                    env={**os.environ, "PYTHONPATH": str(tree / "build/minimal/python")})
     results = json.loads((out / "benchmark.json").read_text(encoding="utf-8"))["results"]
@@ -157,6 +162,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("manifest", nargs="*", type=Path, help="of the benchmark's data")
     parser.add_argument("--out", type=Path, default=Path("out/without"), help="(%(default)s)")
+    parser.add_argument("--data", metavar="NAMES", help="data sets, separated by commas; else all")
     parser.add_argument("--rows", type=int, default=2000, help="of each data set (%(default)s)")
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (%(default)s)")
     parser.add_argument("--only", action="append", choices=MECHANISMS, metavar="MECHANISM")
