@@ -15,7 +15,6 @@ namespace kelpie {
 namespace {
 
 constexpr const auto& kChange = kModelTuning.change;
-constexpr double kHuber = kOnline.members.huber;  // as the members, which follow the monitor
 constexpr double kKept = kOnline.members.kept;
 constexpr double kBefore = -std::numeric_limits<double>::infinity();  // of all times [s]
 
@@ -24,28 +23,7 @@ std::size_t used_terms(const TermSet& terms) {
                                             : std::min(terms.without_products(), terms.size());
 }
 
-// Errors beyond 2.5 of their standard deviations count less.
-double robust_weight(double error, double variance) {
-  const double far = kHuber * kHuber * variance;
-  return error * error > far ? far / (error * error) : 1.0;
-}
-
-// With tails of Huber's (1964) loss.
-double robust_log_density(double error, double variance) {
-  const double deviations = std::abs(error) / std::sqrt(variance);
-  const double square =
-      deviations <= kHuber ? deviations * deviations : kHuber * (2.0 * deviations - kHuber);
-  return -0.5 * (square + std::log(variance));
-}
-
-double log_density(double error, double variance) {
-  return -0.5 * (error * error / variance + std::log(variance));
-}
-
 }  // namespace
-
-const ChangeMonitor::Lone ChangeMonitor::kUnknown{.variance =
-                                                      kChange.deviation * kChange.deviation};
 
 ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> states,
                              std::span<const std::size_t> commands)
@@ -56,7 +34,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       fit_(used_terms(terms) + 1, kChange.prior, states.size()),
       scatter_(states.size(), RobustScale(kChange.least_errors, kChange.scatter_every)),
       correlation_(states.size()),
-      starts_(kMostStarts),
+      starts_(kMostStarts, ChangeStart(commands_, states.size(), columns() * states.size())),
       changed_start_(kMostStarts),
       gained_(commands.size()),
       believed_s_(kBefore),
@@ -68,12 +46,10 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       phi_(columns()),
       weighted_y_(axes()),
       error_(axes()),
-      effect_(causes()),
-      gain_(causes()),
+      effects_{.of_cause = std::vector<double>(causes() + 2),
+               .square = std::vector<double>(commands.size())},
       mixed_(causes()),
-      told_gains_(commands.size(), 1.0),
-      usual_effect_(commands.size()),
-      square_(commands.size()) {
+      usual_effect_(commands.size()) {
   for (const std::size_t command : commands) {
     gains_.push_back({.input = command});
     bool scales = true;
@@ -86,7 +62,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
     const std::span<const std::size_t> inputs = terms.term(k).columns();
     for (std::size_t c = 0; c < commands.size(); ++c) {
       if (std::ranges::find(inputs, commands[c]) != inputs.end()) {
-        term_commands_[k].push_back({c, terms.power(k, commands[c])});
+        term_commands_[k].push_back({c, terms.power(k, commands[c]) > 1.0});
       }
     }
     if (inputs.size() == 1) {
@@ -94,15 +70,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
           static_cast<std::size_t>(std::ranges::find(states, inputs[0]) - states.begin());
     }
   }
-  for (Start& start : starts_) {
-    start.theta.resize(told_.size());
-    start.size.resize(causes());
-    start.covariance.resize(causes() * causes());
-    start.lone.resize(causes() + 2);
-    start.scatter.resize(axes());
-    start.tau.resize(axes());
-    start.effect.resize(commands_);
-  }
+  told_gains_ = gains_;
 }
 
 ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<const double> y,
@@ -120,15 +88,15 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
   }
   end_old_starts(t);
   if (std::isfinite(leverage_)) {
-    for (Start& start : starts_) {
+    for (ChangeStart& start : starts_) {
       if (start.alive) {
         observe(start, y, true);
       }
     }
   }
-  const Start* const likely = most_evident();
+  const ChangeStart* const likely = most_evident();
   if (likely != nullptr && likely->evidence > threshold()) {
-    Start& start = youngest_with(kChange.alike * likely->evidence);
+    ChangeStart& start = youngest_with(kChange.alike * likely->evidence);
     if (start.evidence > kChange.clear * start.samples) {
       return believe(start, t);
     }
@@ -184,9 +152,9 @@ void ChangeMonitor::learn(std::span<const double> y) {
     }
   }
   for (std::size_t a = 0; errors_known() && a < axes(); ++a) {
-    effects(fit_.theta(a), a);
+    find_effects(fit_.theta(a), a);
     for (std::size_t c = 0; c < commands_; ++c) {
-      usual_effect_[c].add(effect_[c] - square_[c], square_[c],
+      usual_effect_[c].add(effects_.of_cause[c] - effects_.square[c], effects_.square[c],
                            weight / (scatter_[a].value() * scatter_[a].value()));
     }
   }
@@ -206,7 +174,7 @@ bool ChangeMonitor::errors_known() const {
 // of all ages up to ten minutes, the young ones close together. A start with the coefficients of a
 // vehicle that is not known yet would take what is learned of the vehicle for a change.
 void ChangeMonitor::begin_start(double t) {
-  const auto free = std::ranges::find(starts_, false, &Start::alive);
+  const auto free = std::ranges::find(starts_, false, &ChangeStart::alive);
   if (t - begun_s_ < kChange.start_every_s || free == starts_.end() || !known() ||
       !errors_known()) {
     return;
@@ -216,27 +184,11 @@ void ChangeMonitor::begin_start(double t) {
   const int doublings = std::min(std::countr_zero(begun_), kChange.doublings);
   free->begin(t, kChange.life_s * static_cast<double>(1 << doublings));
   std::ranges::copy(fit_.theta(), free->theta.begin());
-  for (std::size_t c = 0; c < causes(); ++c) {
-    free->covariance[c * (causes() + 1)] = kChange.deviation * kChange.deviation;
-  }
+  free->expect_all_causes();
   expect_usual_errors(*free);
 }
 
-void ChangeMonitor::Start::begin(double t, double life) {
-  alive = true;
-  begun_s = t;
-  life_s = life;
-  evidence = 0.0;
-  samples = 0.0;
-  peak = 0.0;
-  likelihood = 0.0;
-  std::ranges::fill(size, 0.0);
-  std::ranges::fill(covariance, 0.0);
-  std::ranges::fill(lone, kUnknown);
-  std::ranges::fill(effect, Effect{});
-}
-
-void ChangeMonitor::expect_usual_errors(Start& start) const {
+void ChangeMonitor::expect_usual_errors(ChangeStart& start) const {
   for (std::size_t a = 0; a < axes(); ++a) {
     start.scatter[a] = scatter_[a].value();
     start.tau[a] = correlation_[a].rows_per_sample();
@@ -245,7 +197,7 @@ void ChangeMonitor::expect_usual_errors(Start& start) const {
 
 // A start with half of the evidence lives on, since the peak may be of a change.
 void ChangeMonitor::end_old_starts(double t) {
-  for (Start& start : starts_) {
+  for (ChangeStart& start : starts_) {
     if (!start.alive || t - start.begun_s <= start.life_s) {
       continue;
     }
@@ -259,87 +211,39 @@ void ChangeMonitor::end_old_starts(double t) {
   }
 }
 
-// θᵀφ of an axis, and the change of this value per unit of each size.
-void ChangeMonitor::effects(std::span<const double> theta, std::size_t axis) {
-  std::ranges::fill(effect_, 0.0);
-  std::ranges::fill(square_, 0.0);
-  value_ = theta.back();
+void ChangeMonitor::find_effects(std::span<const double> theta, std::size_t axis) {
+  std::vector<double>& effect = effects_.of_cause;
+  std::ranges::fill(effect, 0.0);
+  std::ranges::fill(effects_.square, 0.0);
+  double& value = effects_.value;
+  value = theta.back();
+  double drag = 0.0;
   for (std::size_t k = 0; k + 1 < columns(); ++k) {
     const double part = theta[k] * phi_[k];
-    value_ += part;
+    value += part;
     for (const Factor& factor : term_commands_[k]) {
-      effect_[factor.command] += part;
-      square_[factor.command] += factor.power > 1.0 ? part : 0.0;
+      effect[factor.command] += part;
+      effects_.square[factor.command] += factor.higher ? part : 0.0;
     }
-    if (term_drag_[k] == axis) {
-      effect_[commands_ + axis] += part;
-    }
+    drag += term_drag_[k] == axis ? part : 0.0;
   }
-  effect_[commands_ + axes() + axis] = value_;
+  effect[commands_ + axis] = effect[causes()] = drag;
+  effect[commands_ + axes() + axis] = effect[causes() + 1] = value;
 }
 
-// The change of an axis' value per unit of a lone size.
-double ChangeMonitor::lone_effect(std::size_t lone, std::size_t axis) const {
-  return lone < causes() ? effect_[lone] : effect_[commands_ + (lone - causes()) * axes() + axis];
-}
-
-// As observe() with one size alone; `error`: of the vehicle before, `unchanged`: the log density of
-// no change. A size that explains less than no change begins anew (CUSUM: Page 1954), and so at the
-// change.
-void ChangeMonitor::observe_lone(Start& start, std::size_t axis, double error, double noise,
-                                 double unchanged) {
-  for (std::size_t k = 0; k < start.lone.size(); ++k) {
-    Lone& lone = start.lone[k];
-    const double effect = lone_effect(k, axis);
-    const double left = error - effect * lone.size;
-    const double variance = noise + effect * effect * lone.variance;
-    lone.likelihood += (robust_log_density(left, variance) - unchanged) / start.tau[axis];
-    const double weight = robust_weight(left, variance) / start.tau[axis];
-    const double gain = lone.variance * effect / (noise / weight + effect * effect * lone.variance);
-    lone.size += gain * left;
-    lone.variance *= 1.0 - gain * effect;
-    if (lone.likelihood <= 0.0) {
-      lone = kUnknown;
-    }
-  }
-}
-
-// The evidence of one row, then a Kalman update of the sizes. The start is compared with the fit,
-// or with the vehicle before the change.
-void ChangeMonitor::observe(Start& start, std::span<const double> y, bool against_fit) {
-  auto covariance = columns_of(std::span<double>(start.covariance), causes());
-  auto size = as_vector(start.size);
-  auto gain = as_vector(gain_);
-  const auto effect = as_vector(std::span<const double>(effect_));
+// The start is compared with the fit, or with the vehicle before the change.
+void ChangeMonitor::observe(ChangeStart& start, std::span<const double> y, bool against_fit) {
   for (std::size_t a = 0; a < axes(); ++a) {
-    effects(std::span(start.theta).subspan(a * columns(), columns()), a);
-    const double noise = start.scatter[a] * start.scatter[a] * (1.0 + leverage_);
-    gain.noalias() = covariance * effect;
-    const double unknown = effect.dot(gain);
-    const double without = against_fit ? error_[a] : y[a] - value_;
-    const double error = y[a] - value_ - effect.dot(size);
-    const double unchanged = robust_log_density(without, noise);
-    observe_lone(start, a, y[a] - value_, noise, unchanged);
-    for (std::size_t c = 0; c < commands_; ++c) {
-      start.effect[c].add(effect_[c] - square_[c], square_[c], 1.0 / noise);
-    }
-    start.likelihood += (robust_log_density(error, noise + unknown) - unchanged) / start.tau[a];
-    const double gained = log_density(error, noise + unknown) - log_density(without, noise);
-    start.evidence += std::clamp(gained, -kChange.clip_nats, kChange.clip_nats) / start.tau[a];
-    start.samples += 1.0 / start.tau[a];
-    const double weight = robust_weight(error, noise + unknown) / start.tau[a];
-    const double scale = 1.0 / (noise / weight + unknown);
-    size += (scale * error) * gain;
-    for (Eigen::Index c = 0; c < gain.size(); ++c) {
-      covariance.col(c) -= (scale * gain(c)) * gain;
-    }
+    find_effects(std::span(start.theta).subspan(a * columns(), columns()), a);
+    const double without = against_fit ? error_[a] : y[a] - effects_.value;
+    start.observe(a, effects_, y[a], without, 1.0 + leverage_);
   }
   start.peak = std::max(start.peak, start.evidence);
 }
 
-const ChangeMonitor::Start* ChangeMonitor::most_evident() const {
-  const Start* best = nullptr;
-  for (const Start& start : starts_) {
+const ChangeStart* ChangeMonitor::most_evident() const {
+  const ChangeStart* best = nullptr;
+  for (const ChangeStart& start : starts_) {
     if (start.alive && (best == nullptr || start.evidence > best->evidence)) {
       best = &start;
     }
@@ -349,9 +253,9 @@ const ChangeMonitor::Start* ChangeMonitor::most_evident() const {
 
 // An older start saw rows of before the change, which hold its sizes back. The evidence of a row is
 // bounded, and hardly tells such starts from those at the change.
-ChangeMonitor::Start& ChangeMonitor::youngest_with(double evidence) {
-  Start* youngest = nullptr;
-  for (Start& start : starts_) {
+ChangeStart& ChangeMonitor::youngest_with(double evidence) {
+  ChangeStart* youngest = nullptr;
+  for (ChangeStart& start : starts_) {
     if (start.alive && start.evidence >= evidence &&
         (youngest == nullptr || start.begun_s > youngest->begun_s)) {
       youngest = &start;
@@ -360,22 +264,24 @@ ChangeMonitor::Start& ChangeMonitor::youngest_with(double evidence) {
   return *youngest;
 }
 
-ChangeMonitor::Event ChangeMonitor::believe(Start& start, double t) {
+ChangeMonitor::Event ChangeMonitor::believe(ChangeStart& start, double t) {
   changed_start_ = static_cast<std::size_t>(&start - starts_.data());
   believed_s_ = t;
   moved_s_ = t;
   since_s_ = start.begun_s;
   std::ranges::fill(told_, 0.0);
-  std::ranges::fill(told_gains_, 1.0);
+  for (CommandGain& told : told_gains_) {
+    told.factor = 1.0;
+  }
   gained_ = clear_command(start).value_or(commands_);
   move_to(&start);
   return Event::changed;
 }
 
 // The last start before a time, whose coefficients no later row has touched; else a new one.
-ChangeMonitor::Start& ChangeMonitor::start_before(double since_s) {
-  Start* last = nullptr;
-  for (Start& start : starts_) {
+ChangeStart& ChangeMonitor::start_before(double since_s) {
+  ChangeStart* last = nullptr;
+  for (ChangeStart& start : starts_) {
     if (start.alive && start.begun_s <= since_s &&
         (last == nullptr || start.begun_s > last->begun_s)) {
       last = &start;
@@ -402,89 +308,46 @@ ChangeMonitor::Event ChangeMonitor::believe_cause(const Cause& cause, double sin
   if (!command || changed_start_ < kMostStarts || !errors_known() || since_s <= believed_s_) {
     return Event::none;
   }
-  const double size = cause.size - 1.0;
-  const double variance = kChange.named_deviation * kChange.named_deviation;
-  Start& start = start_before(since_s);
+  ChangeStart& start = start_before(since_s);
   start.begin(since_s, kChange.life_s);
   expect_usual_errors(start);
-  start.size[*command] = size;
-  start.covariance[*command * (causes() + 1)] = variance;
-  start.lone[*command] = {.size = size, .variance = variance, .likelihood = kChange.enough};
+  start.expect_cause(*command, cause.size - 1.0, kChange.named_deviation * kChange.named_deviation);
   start.effect = usual_effect_;
   return believe(start, row_s_);
 }
 
 // One cause that explains nearly all that all causes together explain: errors of the equation of
 // motion favour many small changes, and a thruster that fails is more usual.
-std::optional<std::size_t> ChangeMonitor::clear_command(const Start& start) const {
-  const auto lone = std::ranges::max_element(start.lone, {}, &Lone::likelihood);
+std::optional<std::size_t> ChangeMonitor::clear_command(const ChangeStart& start) const {
+  const auto lone = std::ranges::max_element(start.lone, {}, &LoneCause::likelihood);
   const auto command = static_cast<std::size_t>(lone - start.lone.begin());
   const bool clear = command < commands_ && scales_[command] &&
                      lone->likelihood >= kChange.lone_share * start.likelihood;
   return clear ? std::optional(command) : std::nullopt;
 }
 
-void ChangeMonitor::Effect::add(double linear, double square, double weight) {
-  ll += weight * linear * linear;
-  lq += weight * linear * square;
-  qq += weight * square * square;
-}
-
-double ChangeMonitor::Effect::gain(double size) const {
-  double best = 1.0;
-  double least = std::numeric_limits<double>::infinity();
-  for (double g = kChange.least_gain; g <= kChange.most_gain; g += kChange.gain_step) {
-    const double linear = g - 1.0 - size;
-    const double square = g * g - 1.0 - size;
-    const double error = linear * linear * ll + 2.0 * linear * square * lq + square * square * qq;
-    if (error < least) {
-      least = error;
-      best = g;
-    }
-  }
-  return best;
-}
-
 // gains_ leads from the commands' factors in service to those of the start; null: of before the
 // change.
-void ChangeMonitor::move_gains(const Start* start) {
+void ChangeMonitor::move_gains(const ChangeStart* start) {
   if (start != nullptr) {
     gained_ = clear_command(*start).value_or(gained_);
   }
   for (std::size_t c = 0; c < commands_; ++c) {
     const bool has_failed = start != nullptr && c == gained_;
     const double gain = has_failed ? start->effect[c].gain(start->lone[c].size) : 1.0;
-    gains_[c].factor = gain / told_gains_[c];
-    told_gains_[c] = gain;
+    gains_[c].factor = gain / told_gains_[c].factor;
+    told_gains_[c].factor = gain;
   }
-}
-
-// The sizes of all hypotheses of a start, weighted by their likelihood.
-void ChangeMonitor::mix_sizes(const Start& start) {
-  const double most = std::max(
-      start.likelihood, std::ranges::max_element(start.lone, {}, &Lone::likelihood)->likelihood);
-  double sum = std::exp(start.likelihood - most);
-  as_vector(mixed_) = sum * as_vector(std::span<const double>(start.size));
-  for (std::size_t k = 0; k < start.lone.size(); ++k) {
-    const double weight = std::exp(start.lone[k].likelihood - most);
-    const bool one = k < causes();
-    const std::size_t first = one ? k : commands_ + (k - causes()) * axes();
-    for (std::size_t c = first; c < first + (one ? 1 : axes()); ++c) {
-      mixed_[c] += weight * start.lone[k].size;
-    }
-    sum += weight;
-  }
-  as_vector(mixed_) /= sum;
 }
 
 // step_ leads from the coefficients in service to those of the start; null: of before the change.
-void ChangeMonitor::move_to(const Start* start) {
+void ChangeMonitor::move_to(const ChangeStart* start) {
   if (by_gain()) {
     move_gains(start);
     return;
   }
   if (start != nullptr) {
-    mix_sizes(*start);
+    start->mix_sizes(mixed_);
   }
   for (std::size_t a = 0; a < axes(); ++a) {
     for (std::size_t k = 0; k < columns(); ++k) {
@@ -507,7 +370,7 @@ void ChangeMonitor::move_to(const Start* start) {
 }
 
 ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) {
-  Start& start = starts_[changed_start_];
+  ChangeStart& start = starts_[changed_start_];
   if (std::isfinite(leverage_)) {
     observe(start, y, false);
   }
@@ -515,7 +378,7 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
     move_to(nullptr);
     usual_ = std::max(usual_, start.peak);
     changed_start_ = kMostStarts;
-    std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });
+    std::ranges::for_each(starts_, [](ChangeStart& one) { one.alive = false; });
     return Event::withdrawn;
   }
   if (t - believed_s_ > kChange.probation_s) {
@@ -531,15 +394,13 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
 
 // The changed vehicle becomes the vehicle without a change.
 ChangeMonitor::Event ChangeMonitor::settle() {
-  const Start& start = starts_[changed_start_];
+  const ChangeStart& start = starts_[changed_start_];
   if (by_gain()) {
     fit_.set_theta(start.theta);
-    as_vector(phi_).setOnes();
     for (std::size_t k = 0; k + 1 < columns(); ++k) {
-      for (const Factor& factor : term_commands_[k]) {
-        phi_[k] *= std::pow(told_gains_[factor.command], -factor.power);
-      }
+      phi_[k] = 1.0 / term_gain(terms_, k, told_gains_);
     }
+    phi_.back() = 1.0;
     fit_.rescale(phi_, 1.0);
   } else {
     std::ranges::transform(start.theta, told_, step_.begin(), std::plus<>{});
@@ -550,42 +411,17 @@ ChangeMonitor::Event ChangeMonitor::settle() {
     samples_ = kKept;
   }
   changed_start_ = kMostStarts;
-  std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });
+  std::ranges::for_each(starts_, [](ChangeStart& one) { one.alive = false; });
   return Event::none;
 }
 
 void ChangeMonitor::restart() {
   fit_.clear();
   std::ranges::for_each(scatter_, &RobustScale::clear);
-  std::ranges::for_each(starts_, [](Start& one) { one.alive = false; });
+  std::ranges::for_each(starts_, [](ChangeStart& one) { one.alive = false; });
   changed_start_ = kMostStarts;
   believed_s_ = row_s_;
   samples_ = 0.0;
-}
-
-void ChangeMonitor::Effect::visit(Archive& archive) {
-  for (double* const number : {&ll, &lq, &qq}) {
-    archive.number(*number);
-  }
-}
-
-void ChangeMonitor::Start::visit(Archive& archive) {
-  archive.flag(alive);
-  if (!alive) {
-    return;
-  }
-  for (double* const number : {&begun_s, &life_s, &evidence, &samples, &peak, &likelihood}) {
-    archive.number(*number);
-  }
-  for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
-    archive.numbers(*values);
-  }
-  std::ranges::for_each(effect, [&](Effect& one) { one.visit(archive); });
-  for (Lone& one : lone) {
-    for (double* const number : {&one.size, &one.variance, &one.likelihood}) {
-      archive.number(*number);
-    }
-  }
 }
 
 void ChangeMonitor::visit(Archive& archive) {
@@ -594,7 +430,7 @@ void ChangeMonitor::visit(Archive& archive) {
     archive.part("scatter", scatter_[a]);
     archive.part("correlation", correlation_[a]);
   }
-  std::ranges::for_each(starts_, [&](Start& start) { archive.part("start", start); });
+  std::ranges::for_each(starts_, [&](ChangeStart& start) { archive.part("start", start); });
   archive.whole(changed_start_, 0, kMostStarts);
   archive.require(changed_start_ == kMostStarts || starts_[changed_start_].alive,
                   "holds a change without a start");
@@ -607,8 +443,8 @@ void ChangeMonitor::visit(Archive& archive) {
   archive.whole(rows_);
   archive.whole(begun_);
   archive.numbers(told_);
-  archive.numbers(told_gains_);
-  std::ranges::for_each(usual_effect_, [&](Effect& one) { one.visit(archive); });
+  std::ranges::for_each(told_gains_, [&](CommandGain& told) { archive.number(told.factor); });
+  std::ranges::for_each(usual_effect_, [&](CommandEffect& one) { one.visit(archive); });
   archive.whole(gained_, 0, commands_);
 }
 

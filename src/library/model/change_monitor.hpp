@@ -13,6 +13,7 @@
 #include "learner/error_correlation.hpp"
 #include "learner/robust_scale.hpp"
 #include "learner/triangular_fit.hpp"
+#include "model/change_start.hpp"
 #include "model/command_gain.hpp"
 
 namespace kelpie {
@@ -94,46 +95,6 @@ class ChangeMonitor {
  private:
   static constexpr std::size_t kMostStarts = 16;
 
-  /// The size of a cause, or of several alike, without any other.
-  struct Lone {
-    double size = 0.0;
-    double variance = 0.0;
-    double likelihood = 0.0;  ///< over no change [nats]
-  };
-  static const Lone kUnknown;
-
-  /// The effect of a command on the rows of a start, as sums over rows and axes: of its terms in
-  /// the first power of the command L, and in the second (and higher) Q.
-  struct Effect {
-    double ll = 0.0;
-    double lq = 0.0;
-    double qq = 0.0;
-    /// The factor g of the command with (g - 1) L + (g² - 1) Q ≈ size (L + Q).
-    double gain(double size) const;
-    void add(double linear, double square, double weight);
-    void visit(Archive& archive);
-  };
-
-  /// The hypothesis of a change at one moment.
-  struct Start {
-    bool alive = false;
-    double begun_s = 0.0;
-    double life_s = 0.0;
-    double evidence = 0.0;              ///< [nats]
-    double samples = 0.0;               ///< independent samples so far
-    double peak = 0.0;                  ///< largest evidence so far [nats]
-    double likelihood = 0.0;            ///< of all sizes together, over no change [nats]
-    std::vector<double> theta;          ///< Θ₀, axis after axis
-    std::vector<double> size;           ///< mean of s
-    std::vector<double> covariance;     ///< of s
-    std::vector<Lone> lone;             ///< each cause, then drag of all axes, then inertia of all
-    std::vector<double> scatter;        ///< usual error of each axis
-    std::vector<double> tau;            ///< rows per independent sample of each axis
-    std::vector<Effect> effect;         ///< of each command
-    void begin(double t, double life);  ///< Knows nothing; Θ₀, scatter and tau stay.
-    void visit(Archive& archive);
-  };
-
   std::size_t columns() const { return fit_.terms(); }
   std::size_t axes() const { return fit_.targets(); }
   std::size_t causes() const { return commands_ + 2 * axes(); }
@@ -144,37 +105,34 @@ class ChangeMonitor {
   void learn(std::span<const double> y);
   void begin_start(double t);
   void end_old_starts(double t);
-  void effects(std::span<const double> theta, std::size_t axis);
+  void find_effects(std::span<const double> theta, std::size_t axis);
   bool errors_known() const;
-  void expect_usual_errors(Start& start) const;
-  Start& start_before(double since_s);
+  void expect_usual_errors(ChangeStart& start) const;
+  ChangeStart& start_before(double since_s);
   std::optional<std::size_t> command_of(const Cause& cause) const;
-  double lone_effect(std::size_t lone, std::size_t axis) const;
-  void observe(Start& start, std::span<const double> y, bool against_fit);
-  void observe_lone(Start& start, std::size_t axis, double error, double noise, double unchanged);
-  void mix_sizes(const Start& start);
-  std::optional<std::size_t> clear_command(const Start& start) const;
-  void move_gains(const Start* start);
-  const Start* most_evident() const;
-  Start& youngest_with(double evidence);
-  Event believe(Start& start, double t);
+  void observe(ChangeStart& start, std::span<const double> y, bool against_fit);
+  std::optional<std::size_t> clear_command(const ChangeStart& start) const;
+  void move_gains(const ChangeStart* start);
+  const ChangeStart* most_evident() const;
+  ChangeStart& youngest_with(double evidence);
+  Event believe(ChangeStart& start, double t);
   Event follow(std::span<const double> y, double t);
   Event settle();
-  void move_to(const Start* start);
+  void move_to(const ChangeStart* start);
 
   TermSet terms_;
   std::size_t commands_;
-  /// A command in a term, with its power.
+  /// A command in a term.
   struct Factor {
     std::size_t command = 0;
-    double power = 1.0;
+    bool higher = false;  ///< in a power above the first
   };
   std::vector<std::vector<Factor>> term_commands_;  ///< commands in each term
   std::vector<std::size_t> term_drag_;              ///< axis that each term damps, or none
   TriangularFit fit_;
   std::vector<RobustScale> scatter_;
   std::vector<ErrorCorrelation> correlation_;
-  std::vector<Start> starts_;
+  std::vector<ChangeStart> starts_;
   std::size_t changed_start_;  ///< number of the start believed; kMostStarts: none
   std::size_t gained_;         ///< command of which the effect has changed; commands_: not so
   double believed_s_;          ///< the last change, by whichever mechanism [s]
@@ -188,14 +146,13 @@ class ChangeMonitor {
   double usual_ = 0.0;               ///< largest evidence of former starts [nats], fading
   std::vector<double> told_, step_;  ///< change of the coefficients in service; last step
   std::vector<double> all_phi_, phi_, weighted_y_, error_;  ///< of the row
-  std::vector<bool> scales_;        ///< per command: every term is a power of the command
-  std::vector<CommandGain> gains_;  ///< last event
-  double leverage_ = 0.0;           ///< φᵀPφ of the row
-  std::vector<double> effect_, gain_, mixed_;  ///< scratch: per cause
-  std::vector<double> told_gains_;             ///< in service, since before the change
-  std::vector<Effect> usual_effect_;           ///< of each command on all rows learned
-  std::vector<double> square_;  ///< scratch: per command, the effect in higher powers
-  double value_ = 0.0;          ///< scratch: Θ₀ᵀφ
+  std::vector<bool> scales_;                 ///< per command: every term is a power of the command
+  std::vector<CommandGain> gains_;           ///< last event
+  double leverage_ = 0.0;                    ///< φᵀPφ of the row
+  CauseEffects effects_;                     ///< scratch
+  std::vector<double> mixed_;                ///< scratch: per cause
+  std::vector<CommandGain> told_gains_;      ///< in service, since before the change
+  std::vector<CommandEffect> usual_effect_;  ///< of each command on all rows learned
 };
 
 }  // namespace kelpie

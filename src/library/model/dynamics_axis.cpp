@@ -118,7 +118,7 @@ void DynamicsAxis::follow(std::span<const CommandGain> gains, std::span<const do
   }
   if (!gains.empty()) {
     for (const CommandGain& gain : gains) {
-      amplify(gain.input, gain.factor);
+      amplify(gain);
     }
     learner_.shift({}, news);
     return;

@@ -159,7 +159,8 @@ bool ScaleTracker::outgrown(const AxisScaling& scaling) const {
   return std::max(scaling.input.growth(input_moments_), target) > track_;
 }
 
-void ScaleTracker::amplify(std::size_t input, double factor) {
+void ScaleTracker::amplify(const CommandGain& gain) {
+  const auto [input, factor] = gain;
   if (factor == 1.0) {
     return;
   }
@@ -169,7 +170,7 @@ void ScaleTracker::amplify(std::size_t input, double factor) {
       scaling.input.whitening(row, input) *= factor;
     }
     for (std::size_t k = 0; k < terms_.size(); ++k) {
-      scaling.term_scale[k] /= std::pow(factor, terms_.power(k, input));
+      scaling.term_scale[k] /= term_gain(terms_, k, {&gain, 1});
     }
   };
   apply(*scaling_);  // NOLINT(bugprone-unchecked-optional-access): required

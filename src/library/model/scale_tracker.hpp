@@ -11,6 +11,7 @@
 #include "kelpie/model/settings.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "learner/sample_collector.hpp"
+#include "model/command_gain.hpp"
 #include "model/warm_up.hpp"
 
 namespace kelpie {
@@ -67,10 +68,9 @@ class ScaleTracker {
   /// except with ScalingKind::full.
   const AxisScaling* next();
 
-  /// The vehicle moves as if an input were `factor` times what it is: the scale maps x_i as it
-  /// mapped factor · x_i before. Statistics are of the log, and stay. Requires scaling(), factor >
-  /// 0 and terms that are powers of this input.
-  void amplify(std::size_t input, double factor);
+  /// The vehicle moves as if a command were `factor` times what the command is: the scale maps x_i
+  /// as it mapped factor · x_i before. Statistics are of the log, and stay. Requires scaling().
+  void amplify(const CommandGain& gain);
 
   void set_out() { move_ = Move::coming; }  ///< Starts a change to the scale of next().
   void adopt();  ///< Puts the scale of next() in use. The first call allocates.

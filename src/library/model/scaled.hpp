@@ -57,7 +57,7 @@ class Scaled : public OnlineRegressor {
          std::optional<AxisScaling> scaling);
 
   /// ScaleTracker::amplify(). The caller tells the learner.
-  void amplify(std::size_t input, double factor) { scale_.amplify(input, factor); }
+  void amplify(const CommandGain& gain) { scale_.amplify(gain); }
 
   /// ScaleTracker::resume_from(); no samples are held back.
   void resume_from(const AxisScaling& scaling) { scale_.resume_from(scaling); }

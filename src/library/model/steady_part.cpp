@@ -315,10 +315,7 @@ void SteadyPart::restart() {
 void SteadyPart::amplify(std::span<const CommandGain> gains) {
   std::ranges::fill(scratch_, 1.0);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    for (const CommandGain& gain : gains) {
-      const double power = gain.factor != 1.0 ? terms_.power(k, gain.input) : 0.0;
-      scratch_[k] *= std::isfinite(power) ? std::pow(gain.factor, -power) : 1.0;
-    }
+    scratch_[k] = 1.0 / term_gain(terms_, k, gains);
   }
   fit_.rescale(scratch_, 1.0);
 }

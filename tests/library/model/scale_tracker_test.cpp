@@ -172,7 +172,7 @@ TEST_F(ScaleTrackerTest, AnAmplifiedInputIsScaledAsTheInputTimesTheFactor) {
   ScaledSample mapped = of_twice;
   double y = 0.1;
   scale.map()(mapped, y);
-  scale.amplify(0, 2.0);
+  scale.amplify({.input = 0, .factor = 2.0});
   const ScaledSample now = scale_sample(*scale.scaling(), scale.terms(), std::array{0.3, -40.0});
   ScaledSample mapped_now = now;
   scale.map()(mapped_now, y);

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/change_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/eigen.hpp"
+#include "learner/tuning.hpp"
+#include "model/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr const auto& kStart = kModelTuning.change;
+constexpr double kHuber = kOnline.members.huber;  // as the members, which follow the monitor
+constexpr LoneCause kUnknown{.variance = kStart.deviation * kStart.deviation};
+
+// With tails of Huber's (1964) loss.
+double robust_log_density(double error, double variance) {
+  const double deviations = std::abs(error) / std::sqrt(variance);
+  const double square =
+      deviations <= kHuber ? deviations * deviations : kHuber * (2.0 * deviations - kHuber);
+  return -0.5 * (square + std::log(variance));
+}
+
+double log_density(double error, double variance) {
+  return -0.5 * (error * error / variance + std::log(variance));
+}
+
+}  // namespace
+
+double robust_weight(double error, double variance) {
+  const double far = kHuber * kHuber * variance;
+  return error * error > far ? far / (error * error) : 1.0;
+}
+
+void CommandEffect::add(double linear, double square, double weight) {
+  ll += weight * linear * linear;
+  lq += weight * linear * square;
+  qq += weight * square * square;
+}
+
+double CommandEffect::gain(double size) const {
+  double best = 1.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (double g = kStart.least_gain; g <= kStart.most_gain; g += kStart.gain_step) {
+    const double linear = g - 1.0 - size;
+    const double square = g * g - 1.0 - size;
+    const double error = linear * linear * ll + 2.0 * linear * square * lq + square * square * qq;
+    if (error < least) {
+      least = error;
+      best = g;
+    }
+  }
+  return best;
+}
+
+void CommandEffect::visit(Archive& archive) {
+  for (double* const number : {&ll, &lq, &qq}) {
+    archive.number(*number);
+  }
+}
+
+ChangeStart::ChangeStart(std::size_t commands, std::size_t axes, std::size_t coefficients)
+    : theta(coefficients),
+      size(commands + 2 * axes),
+      covariance(size.size() * size.size()),
+      lone(size.size() + 2),
+      scatter(axes),
+      tau(axes),
+      effect(commands),
+      gain_(size.size()) {}
+
+void ChangeStart::begin(double t, double life) {
+  alive = true;
+  begun_s = t;
+  life_s = life;
+  evidence = 0.0;
+  samples = 0.0;
+  peak = 0.0;
+  likelihood = 0.0;
+  std::ranges::fill(size, 0.0);
+  std::ranges::fill(covariance, 0.0);
+  std::ranges::fill(lone, kUnknown);
+  std::ranges::fill(effect, CommandEffect{});
+}
+
+void ChangeStart::expect_all_causes() {
+  for (std::size_t c = 0; c < size.size(); ++c) {
+    covariance[c * (size.size() + 1)] = kUnknown.variance;
+  }
+}
+
+void ChangeStart::expect_cause(std::size_t cause, double believed, double variance) {
+  size[cause] = believed;
+  covariance[cause * (size.size() + 1)] = variance;
+  lone[cause] = {.size = believed, .variance = variance, .likelihood = kStart.enough};
+}
+
+// As observe() with one size alone; `error`: of the vehicle before, `unchanged`: the log density of
+// no change. A size that explains less than no change begins anew (CUSUM: Page 1954), and so at the
+// change.
+void ChangeStart::observe_lone(std::size_t axis, const CauseEffects& effects, double error,
+                               double noise, double unchanged) {
+  for (std::size_t k = 0; k < lone.size(); ++k) {
+    LoneCause& one = lone[k];
+    const double unit = effects.of_cause[k];
+    const double left = error - unit * one.size;
+    const double variance = noise + unit * unit * one.variance;
+    one.likelihood += (robust_log_density(left, variance) - unchanged) / tau[axis];
+    const double weight = robust_weight(left, variance) / tau[axis];
+    const double gain = one.variance * unit / (noise / weight + unit * unit * one.variance);
+    one.size += gain * left;
+    one.variance *= 1.0 - gain * unit;
+    if (one.likelihood <= 0.0) {
+      one = kUnknown;
+    }
+  }
+}
+
+void ChangeStart::observe(std::size_t axis, const CauseEffects& effects, double y, double without,
+                          double spread) {
+  auto sizes_covariance = columns_of(std::span<double>(covariance), size.size());
+  auto gain = as_vector(gain_);
+  const auto unit = as_vector(std::span<const double>(effects.of_cause).first(size.size()));
+  const double noise = scatter[axis] * scatter[axis] * spread;
+  gain.noalias() = sizes_covariance * unit;
+  const double unknown = unit.dot(gain);
+  const double error = y - effects.value - unit.dot(as_vector(size));
+  const double unchanged = robust_log_density(without, noise);
+  observe_lone(axis, effects, y - effects.value, noise, unchanged);
+  for (std::size_t c = 0; c < effect.size(); ++c) {
+    effect[c].add(effects.of_cause[c] - effects.square[c], effects.square[c], 1.0 / noise);
+  }
+  likelihood += (robust_log_density(error, noise + unknown) - unchanged) / tau[axis];
+  const double gained = log_density(error, noise + unknown) - log_density(without, noise);
+  evidence += std::clamp(gained, -kStart.clip_nats, kStart.clip_nats) / tau[axis];
+  samples += 1.0 / tau[axis];
+  const double weight = robust_weight(error, noise + unknown) / tau[axis];
+  const double scale = 1.0 / (noise / weight + unknown);
+  as_vector(size) += (scale * error) * gain;
+  for (Eigen::Index c = 0; c < gain.size(); ++c) {
+    sizes_covariance.col(c) -= (scale * gain(c)) * gain;
+  }
+}
+
+void ChangeStart::mix_sizes(std::span<double> sizes) const {
+  const double most =
+      std::max(likelihood, std::ranges::max_element(lone, {}, &LoneCause::likelihood)->likelihood);
+  double sum = std::exp(likelihood - most);
+  as_vector(sizes) = sum * as_vector(std::span<const double>(size));
+  const std::size_t axes = scatter.size();
+  for (std::size_t k = 0; k < lone.size(); ++k) {
+    const double weight = std::exp(lone[k].likelihood - most);
+    const bool one = k < size.size();
+    const std::size_t first = one ? k : effect.size() + (k - size.size()) * axes;
+    for (std::size_t c = first; c < first + (one ? 1 : axes); ++c) {
+      sizes[c] += weight * lone[k].size;
+    }
+    sum += weight;
+  }
+  as_vector(sizes) /= sum;
+}
+
+void ChangeStart::visit(Archive& archive) {
+  archive.flag(alive);
+  if (!alive) {
+    return;
+  }
+  for (double* const number : {&begun_s, &life_s, &evidence, &samples, &peak, &likelihood}) {
+    archive.number(*number);
+  }
+  for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
+    archive.numbers(*values);
+  }
+  std::ranges::for_each(effect, [&](CommandEffect& one) { one.visit(archive); });
+  for (LoneCause& one : lone) {
+    for (double* const number : {&one.size, &one.variance, &one.likelihood}) {
+      archive.number(*number);
+    }
+  }
+}
+
+}  // namespace kelpie

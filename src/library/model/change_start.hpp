@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/archive.hpp"
+
+namespace kelpie {
+
+/// The size of a cause, or of several alike, without any other.
+struct LoneCause {
+  double size = 0.0;
+  double variance = 0.0;
+  double likelihood = 0.0;  ///< over no change [nats]
+};
+
+/// The effect of a command on rows, as sums over rows and axes: of the command's terms in the first
+/// power of the command L, and in the second (and higher) Q.
+struct CommandEffect {
+  double ll = 0.0;
+  double lq = 0.0;
+  double qq = 0.0;
+
+  void add(double linear, double square, double weight);
+
+  /// The factor g of the command with (g - 1) L + (g² - 1) Q ≈ size (L + Q).
+  double gain(double size) const;
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+};
+
+/// The value of one axis at one row, and the effect of every cause on this value.
+struct CauseEffects {
+  double value = 0.0;            ///< Θ₀ᵀφ
+  std::vector<double> of_cause;  ///< ∂value/∂s: of each cause, then the drag, then the inertia
+  std::vector<double> square;    ///< of each command: the part in higher powers of the command
+};
+
+/// A start of the ChangeMonitor: the hypothesis that the vehicle has changed at one moment, with
+/// the size of every cause. Causes are the commands, then the drag of every axis, then the inertia
+/// of every axis. Memory: the constructor's.
+struct ChangeStart {
+  /// Requires 1 axis or more, and of coefficients some per axis.
+  ChangeStart(std::size_t commands, std::size_t axes, std::size_t coefficients);
+
+  /// Begins at t [s], without knowledge of sizes; Θ₀, scatter and tau stay.
+  void begin(double t, double life);
+
+  /// Every cause may have a part in the change.
+  void expect_all_causes();
+
+  /// One cause alone is believed, with this size and variance.
+  void expect_cause(std::size_t cause, double size, double variance);
+
+  /// Adds the target y of one axis at one row: the evidence, then a Kalman update of all sizes.
+  /// `without`: the error of the vehicle without a change. `spread`: variance of an error over the
+  /// variance of the noise.
+  void observe(std::size_t axis, const CauseEffects& effects, double y, double without,
+               double spread);
+
+  /// The sizes by all hypotheses of this start, weighted by their likelihood.
+  void mix_sizes(std::span<double> sizes) const;
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+  bool alive = false;
+  double begun_s = 0.0;
+  double life_s = 0.0;
+  double evidence = 0.0;              ///< [nats]
+  double samples = 0.0;               ///< independent samples so far
+  double peak = 0.0;                  ///< largest evidence after a row [nats]
+  double likelihood = 0.0;            ///< of all sizes together, over no change [nats]
+  std::vector<double> theta;          ///< Θ₀, axis after axis
+  std::vector<double> size;           ///< mean of s
+  std::vector<double> covariance;     ///< of s
+  std::vector<LoneCause> lone;        ///< each cause, then drag of all axes, then inertia of all
+  std::vector<double> scatter;        ///< usual error of each axis
+  std::vector<double> tau;            ///< rows per independent sample of each axis
+  std::vector<CommandEffect> effect;  ///< of each command
+
+ private:
+  void observe_lone(std::size_t axis, const CauseEffects& effects, double error, double noise,
+                    double unchanged);
+
+  std::vector<double> gain_;  ///< scratch
+};
+
+/// Weight of an error: errors beyond 2.5 of their standard deviations count less.
+double robust_weight(double error, double variance);
+
+}  // namespace kelpie
