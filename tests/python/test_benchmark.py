@@ -271,6 +271,15 @@ def test_a_seed_gives_the_same_figures_with_any_number_of_processes(folder, tmp_
     assert (tmp_path / "one/index.html").read_text().startswith("<!DOCTYPE html>")
 
 
+def test_tracks_are_those_of_the_data_set_and_of_the_command(folder, tmp_path):
+    assert run("run", folder / "small.toml", "--out", tmp_path, "--only", "none", "--rows", "500",
+               "--tracks", "anytime,changes") == 0
+    record = json.loads((tmp_path / "benchmark.json").read_text())
+    assert {"anytime", "changes"} <= record["results"][0].keys()
+    assert not {"open_loop", "rates", "hostile", "cost"} & record["results"][0].keys()
+    assert "--tracks anytime,changes" in record["command"]
+
+
 def test_the_page_is_whole_and_escapes(folder, tmp_path):
     learner = tmp_path / "wild.py"
     learner.write_text('class Wild:\n    "<script>alert(1)</script>"\n'
@@ -389,6 +398,7 @@ def test_a_bad_entry_says_what_would_be_right(place, message, folder, tmp_path, 
 
 def test_names_that_are_not_known(folder, tmp_path, capsys):
     for option, message in (("--only", "'river' is not known; there are kelpie"),
+                            ("--tracks", "'river' is not known; there are anytime"),
                             ("--data", "'river' is not known; there are small")):
         assert run("run", folder / "small.toml", "--out", tmp_path / "out", option, "river") == 2
         assert message in capsys.readouterr().err
