@@ -38,8 +38,6 @@ MECHANISMS = {
     "member line": without_member(4),
     "shares by errors": ("learner/member_shares.cpp",
                          "kOnline.shares.learning_rate * losses_.of[k]", "0.0 * losses_.of[k]"),
-    "shares from before a change": ("learner/member_shares.cpp",
-                                    "if (suspicion_marked_) {", "if (false) {"),
     "calibration slope": ("learner/member_shares.cpp",
                           "slope_ = losses_.calibration.value();", "slope_ = 1.0;"),
     "limits of predictions": ("learner/committee.cpp", "Limits limits = seen_.limits();",

@@ -132,11 +132,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   if (decision.had_model) {
     shares_.calibrate(said, fits_->mean.model()(z), y);
   }
-  if (decision.suspected) {
-    shares_.mark_suspicion();
-  }
   if (decision.changed || decision.withdrawn) {
-    shares_.roll_back();
     if (decision.changed && decision.recalled == 0) {
       reset_for_new_vehicle();
     } else {

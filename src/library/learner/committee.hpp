@@ -34,7 +34,7 @@ struct LearnerState;
 /// then forget everything and relearn the learner's buffer (Relearning), a few samples per update
 /// and two rounds in all, since the second round knows the outliers from its start. After a change
 /// to an unknown vehicle `precise` keeps its estimate as a weak prior (SparseRegression::weaken).
-/// Weights return to their values before the change and are updated again after the last round.
+/// Weights are updated again after the last round.
 ///
 /// Real time: allocates in the constructor only. An update costs the learner's update and O(m²) for
 /// m centres and terms. Memory: bytes().

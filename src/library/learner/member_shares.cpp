@@ -28,7 +28,6 @@ void MemberShares::calibrate(double said, double mean, double was) {
 }
 
 void MemberShares::learn_block() {
-  before_ = losses_;
   double all = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
     block_[k] /= static_cast<double>(kBlock);
@@ -43,28 +42,12 @@ void MemberShares::learn_block() {
   }
 }
 
-void MemberShares::mark_suspicion() {
-  kept_ = before_;
-  suspicion_marked_ = true;
-}
-
-void MemberShares::roll_back() {
-  if (suspicion_marked_) {
-    losses_ = kept_;
-    before_ = kept_;
-    suspicion_marked_ = false;
-    calibration_ = kept_.calibration;
-    update_weights();
-  }
-}
-
 void MemberShares::resume_from(std::span<const double> shares) {
   losses_ = {};
   calibration_ = {};
   for (std::size_t k = 0; k < members_; ++k) {
     losses_.first[k] = std::log(std::max(shares[k], kOnline.shares.least_share));
   }
-  before_ = losses_;
   update_weights();
   start_block();
 }
@@ -101,14 +84,11 @@ void MemberShares::update_weights() {
 void MemberShares::visit(Archive& archive) {
   archive.whole(scored_, 0, kBlock - 1);
   archive.numbers(std::span(block_).first(members_));
-  for (Losses* const losses : {&losses_, &before_, &kept_}) {
-    archive.numbers(std::span(losses->first).first(members_));
-    archive.numbers(std::span(losses->of).first(members_));
-    archive.number(losses->all);
-    archive.number(losses->blocks);
-    archive.part("calibration", losses->calibration);
-  }
-  archive.flag(suspicion_marked_);
+  archive.numbers(std::span(losses_.first).first(members_));
+  archive.numbers(std::span(losses_.of).first(members_));
+  archive.number(losses_.all);
+  archive.number(losses_.blocks);
+  archive.part("calibration at the block", losses_.calibration);
   archive.part("calibration", calibration_);
   if (archive.loading()) {
     update_weights();

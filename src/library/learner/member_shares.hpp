@@ -48,13 +48,6 @@ class MemberShares {
   /// calibration.
   void halve_evidence();
 
-  /// Errors have started to grow: stores the losses before the last block, for roll_back().
-  void mark_suspicion();
-
-  /// The vehicle has changed: restores the stored losses, if any, since errors during a change do
-  /// not measure the members.
-  void roll_back();
-
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
@@ -78,11 +71,8 @@ class MemberShares {
   std::size_t scored_ = 0;  ///< samples of the present block
   Values block_{};
   Losses losses_;
-  Losses before_;  ///< the last block's end
-  Losses kept_;    ///< before the suspicion
   CalibrationSlope calibration_;
   double slope_ = 1.0;  ///< applied in `shares_`
-  bool suspicion_marked_ = false;
   Values shares_{};
 };
 

@@ -146,9 +146,9 @@ void ChangeMonitor::learn(std::span<const double> y) {
     if (rows_ % kChange.error_every == 0) {
       scatter_[a].add(error);
     }
-    const double most = kChange.clip_errors * scatter_[a].value();
-    if (std::isfinite(most)) {
-      correlation_[a].add(std::clamp(error, -most, most));
+    if (std::isfinite(scatter_[a].value()) && scatter_[a].value() > 0.0) {
+      correlation_[a].add(
+          std::clamp(error / scatter_[a].value(), -kChange.clip_errors, kChange.clip_errors));
     }
   }
   for (std::size_t a = 0; errors_known() && a < axes(); ++a) {

@@ -87,25 +87,6 @@ TEST(MemberShares, CountsErrorsAgainstTheUsualOne) {
   EXPECT_GT(clean.shares()[0], 0.5);
 }
 
-// While a vehicle that has changed isn't noticed, everybody is wrong, and who is less so is no
-// better for it.
-TEST(MemberShares, WhatHappensBetweenSuspicionAndChangeIsForgiven) {
-  MemberShares shares(kAlike);
-  score(shares, {0.2, 0.1, 0.3}, 2000);
-  const std::vector<double> before(shares.shares().begin(), shares.shares().end());
-  score(shares, {0.5, 2.0, 1.0}, 20);  // errors have grown within the block that ends here
-  shares.mark_suspicion();
-  score(shares, {0.5, 3.0, 1.0}, 200);
-  ASSERT_GT(shares.shares()[0], shares.shares()[1]);
-  shares.roll_back();
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(shares.shares()[k], before[k], 0.2 * before[k]);
-  }
-  const std::vector<double> forgiven(shares.shares().begin(), shares.shares().end());
-  shares.roll_back();  // nothing was suspected since
-  EXPECT_TRUE(std::ranges::equal(shares.shares(), forgiven));
-}
-
 TEST(MemberShares, GoesOnWithSharesWhateverErrorsAreUsual) {
   MemberShares shares(kAlike);
   shares.resume_from(std::array{0.6, 0.3, 0.1});
