@@ -76,7 +76,7 @@ function(kelpie_library name)
 endfunction()
 
 # kelpie_building(LABEL TARGET...): the target LABEL builds a building's targets; the building's
-# tests, whose label in ctest is LABEL, add themselves (tests/Test.cmake).
+# tests, whose label in ctest is LABEL, add themselves (tests/CMakeLists.txt).
 function(kelpie_building label)
   if(PROJECT_IS_TOP_LEVEL)
     add_custom_target(${label} DEPENDS ${ARGN})
