@@ -177,7 +177,7 @@ Authority LiveModel::authority(
   }
   const py::gil_scoped_release release;
   const std::shared_lock lock(mutex_);
-  return Authority(*model_.diagnosis(), std::move(commands));
+  return {*model_.diagnosis(), std::move(commands)};
 }
 
 std::vector<std::string> LiveModel::terms() const {
