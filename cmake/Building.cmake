@@ -23,7 +23,8 @@ endfunction()
 function(kelpie_join_sources target)
   if(KELPIE_JOIN_SOURCES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-    # In kB: a tenth of GCC's time went into collecting garbage. The largest units, `motion` and `study`, take 2.5 to 2.9 GB.
+    # In kB: a tenth of GCC's time went into collecting garbage. The largest units, `motion` and
+    # `study`, take 2.5 to 2.9 GB.
     target_compile_options(${target} PRIVATE
       $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
   endif()

@@ -178,7 +178,7 @@ class FolderReader final : public MessageReader {
 
   void find_files(const fs::path& folder) {
     std::error_code error;
-    fs::directory_iterator entries(folder, error);
+    const fs::directory_iterator entries(folder, error);
     if (error) {
       refuse(folder, "cannot be read: " + error.message());
     }
