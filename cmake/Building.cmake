@@ -23,7 +23,8 @@ endfunction()
 function(kelpie_join_sources target)
   if(KELPIE_JOIN_SOURCES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-    # In kB: a tenth of GCC's time went into collecting garbage. The largest unit takes 1.1 GB.
+    # In kB: a tenth of GCC's time went into collecting garbage. The largest units, `motion` and
+    # `study`, take 2.5 to 2.9 GB.
     target_compile_options(${target} PRIVATE
       $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
   endif()
@@ -76,7 +77,7 @@ function(kelpie_library name)
 endfunction()
 
 # kelpie_building(LABEL TARGET...): the target LABEL builds a building's targets; the building's
-# tests, whose label in ctest is LABEL, add themselves (tests/Test.cmake).
+# tests, whose label in ctest is LABEL, add themselves (tests/CMakeLists.txt).
 function(kelpie_building label)
   if(PROJECT_IS_TOP_LEVEL)
     add_custom_target(${label} DEPENDS ${ARGN})

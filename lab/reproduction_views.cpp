@@ -114,14 +114,6 @@ const ContenderRuns* find_contender(const StreamStudy& study, std::string_view k
   return found == study.contenders.end() ? nullptr : &*found;
 }
 
-const StreamStudy* find_study(const Reproduction& result, std::string_view key,
-                              std::string_view split_kind) {
-  const auto found = std::ranges::find_if(result.studies, [&](const StreamStudy& study) {
-    return study.key == key && study.split_kind == split_kind;
-  });
-  return found == result.studies.end() ? nullptr : &*found;
-}
-
 double stage_r2(const ContenderRuns& runs, std::size_t axis, std::size_t stage) {
   return mean_over(runs.seeds.size(),
                    [&](std::size_t seed) { return runs.seeds[seed][axis].stages[stage].r2; });

@@ -22,10 +22,6 @@ MeanCurve mean_curve(const ContenderRuns& runs, std::size_t axis);  ///< Of an a
 /// The contender with the key, or null.
 const ContenderRuns* find_contender(const StreamStudy& study, std::string_view key);
 
-/// The study with key and split ("random", "blocks"), or null.
-const StreamStudy* find_study(const Reproduction& result, std::string_view key,
-                              std::string_view split_kind);
-
 /// R² at the end of a stage, mean of the seeds.
 double stage_r2(const ContenderRuns& runs, std::size_t axis, std::size_t stage);
 

@@ -177,7 +177,7 @@ Authority LiveModel::authority(
   }
   const py::gil_scoped_release release;
   const std::shared_lock lock(mutex_);
-  return Authority(*model_.diagnosis(), std::move(commands));
+  return {*model_.diagnosis(), std::move(commands)};
 }
 
 std::vector<std::string> LiveModel::terms() const {
@@ -240,7 +240,7 @@ void LiveModel::set_nominal_models(const std::vector<TrainedModel>& models) {
   const TermSet& terms = model_.mechanisms(0).terms();
   std::vector<study::Nominal> all;
   for (const TrainedModel& model : models) {
-    all.push_back(study::nominal_of(model, targets_, terms));
+    all.push_back(study::nominal_of(model, targets_, terms, "nominal"));
   }
   study::give(study::mean_of(all), model_);
 }

@@ -82,7 +82,7 @@ TEST_F(Reproduce, AFolderThatAnotherRunWritesIntoIsRefused) {
 
 TEST_F(Reproduce, CtrlCEndsItAndLeavesNothingBehind) {
   write_text(folder_ / "scenarios" / "long.toml",
-             std::string(kScenario.substr(0, kScenario.rfind("8100"))) + "40000.0\n");
+             std::string(kScenario.substr(0, kScenario.rfind("8100"))) + "16000.0\n");
   Running work(folder_.path(), {"reproduce", "--quick", "--scenario", "long", "--out", "out"});
   ASSERT_TRUE(work.wait_for_text("reproducing [")) << work.terminal_text();
   work.press_ctrl_c();

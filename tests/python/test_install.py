@@ -38,30 +38,36 @@ def files_below(folder):
             and not any(part.endswith(".egg-info") for part in file.parts)}
 
 
-def test_pip_installs_the_package(build_dir, source, tmp_path):
-    target = tmp_path / "site"
-    subprocess.run([*PIP, "install", "--quiet", *OFFLINE, "--target", target, source],
-                   check=True, env={**os.environ, "KELPIE_BUILD_DIR": str(build_dir)})
-    script = """
+@pytest.fixture
+def quick(tmp_path):
+    """The environment of a build that does not compress."""
+    (tmp_path / "quick.cfg").write_text("[bdist_wheel]\ncompression = stored\n")
+    return {**os.environ, "DIST_EXTRA_CONFIG": str(tmp_path / "quick.cfg")}
+
+
+def learns_from(site, wish="True"):
+    """The folder that a Python with `site` imports kelpie from, once it has learned."""
+    script = f"""
 import kelpie, numpy, importlib.metadata
 X = numpy.random.default_rng(1).standard_normal((300, 2))
 assert kelpie.OnlineSVR().fit(X, X[:, 0]).score(X, X[:, 0]) > 0.9
 assert importlib.metadata.version("kelpie") == kelpie.__version__
-print(kelpie.__file__)
+assert {wish}
+print(kelpie.__path__[0])
 """
-    found = subprocess.run([sys.executable, "-B", "-c", script], check=True, text=True,
-                           stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(target)})
-    assert found.stdout.strip() == str(target / "kelpie" / "__init__.py")
-    assert {"py.typed", "_kelpie.pyi"} <= {file.name for file in (target / "kelpie").iterdir()}
+    return subprocess.run([sys.executable, "-B", "-c", script], check=True, text=True,
+                          stdout=subprocess.PIPE,
+                          env={**os.environ, "PYTHONPATH": str(site)}).stdout.strip()
 
 
-def test_build_makes_a_wheel_and_a_source_that_is_whole(build_dir, source, tmp_path):
+def test_build_makes_a_source_that_is_whole_and_a_wheel_that_pip_installs(build_dir, source,
+                                                                          quick, tmp_path):
     if importlib.util.find_spec("build") is None:
         pytest.skip("there is no python3-build")
     wanted = {name for name in files_below(source) if not name.startswith("docs/")}
     subprocess.run([sys.executable, "-m", "build", "--no-isolation", "--outdir", tmp_path / "dist",
                     source], check=True, stdout=subprocess.DEVNULL,
-                   env={**os.environ, "KELPIE_BUILD_DIR": str(build_dir)})
+                   env={**quick, "KELPIE_BUILD_DIR": str(build_dir)})
     archive, = (tmp_path / "dist").glob("kelpie-*.tar.gz")
     with tarfile.open(archive) as opened:
         opened.extractall(tmp_path / "archive")
@@ -71,6 +77,10 @@ def test_build_makes_a_wheel_and_a_source_that_is_whole(build_dir, source, tmp_p
     names = zipfile.ZipFile(wheel).namelist()
     assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"kelpie"}
     assert any(name.startswith("kelpie/_kelpie.cpython-") for name in names)
+    target = tmp_path / "site"
+    subprocess.run([*PIP, "install", "--quiet", *OFFLINE, "--target", target, wheel], check=True)
+    assert learns_from(target) == str(target / "kelpie")
+    assert {"py.typed", "_kelpie.pyi"} <= {file.name for file in (target / "kelpie").iterdir()}
     subprocess.run(["cmake", "-S", unpacked, "-B", tmp_path / "configured",
                     "-DKELPIE_BUILD_PYTHON=ON", "-DKELPIE_BUILD_LIVE=OFF",
                     "-DKELPIE_BUILD_TESTS=OFF", "-DKELPIE_INSTALL=OFF",
@@ -78,7 +88,7 @@ def test_build_makes_a_wheel_and_a_source_that_is_whole(build_dir, source, tmp_p
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def test_pip_compiles_on_as_many_jobs_as_there_are_cores(build_dir, source, tmp_path):
+def test_pip_compiles_on_as_many_jobs_as_there_are_cores(build_dir, source, quick, tmp_path):
     """With a cmake that notes its arguments and hands out the module that is already built."""
     module, = (build_dir / "python" / "kelpie").glob("_kelpie.*.so")
     tools = tmp_path / "tools"
@@ -90,7 +100,7 @@ case "$1" in
 esac
 """)
     (tools / "cmake").chmod(0o755)
-    environment = {name: value for name, value in os.environ.items() if name != "KELPIE_BUILD_DIR"}
+    environment = {name: value for name, value in quick.items() if name != "KELPIE_BUILD_DIR"}
     done = subprocess.run([*PIP, "-v", "wheel", *OFFLINE, "--wheel-dir", tmp_path / "wheels",
                            source], check=True, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, start_new_session=True,
@@ -103,13 +113,11 @@ esac
     assert list((tmp_path / "wheels").glob("kelpie-*.whl"))
 
 
-def test_a_portable_wheel_needs_the_c_library_and_numpy_alone(build_dir, source, tmp_path):
+def test_a_portable_wheel_needs_the_c_library_and_numpy_alone(build_dir, source, quick, tmp_path):
     for tool in ("patchelf", "dpkg-query", "ninja"):
         if shutil.which(tool) is None:
             pytest.skip(f"there is no {tool}")
-    (tmp_path / "quick.cfg").write_text("[bdist_wheel]\ncompression = stored\n")
-    environment = {**os.environ, "KELPIE_BUILD_DIR": str(build_dir), "KELPIE_PORTABLE": "1",
-                   "DIST_EXTRA_CONFIG": str(tmp_path / "quick.cfg")}
+    environment = {**quick, "KELPIE_BUILD_DIR": str(build_dir), "KELPIE_PORTABLE": "1"}
     subprocess.run([*PIP, "wheel", "--quiet", *OFFLINE, "--wheel-dir", tmp_path, source],
                    check=True, env=environment)
     wheel, = tmp_path.glob("kelpie-*.whl")
@@ -136,12 +144,6 @@ def test_a_portable_wheel_needs_the_c_library_and_numpy_alone(build_dir, source,
         "libhwy1.copyright", "libsqlite3-0.copyright"}
     bill, = site.glob("kelpie-*.dist-info/sboms/kelpie.spdx.json")
     assert "pybind11-dev" in {p["name"] for p in json.loads(bill.read_text())["packages"]}
-    script = f"""
-import kelpie, numpy
-X = numpy.random.default_rng(1).standard_normal((300, 2))
-assert kelpie.OnlineSVR().fit(X, X[:, 0]).score(X, X[:, 0]) > 0.9
-maps = open("/proc/self/maps").read()
-assert "{site}/kelpie/_libraries/libsqlite3-" in maps and "/libsqlite3.so" not in maps
-"""
-    subprocess.run([sys.executable, "-B", "-c", script], check=True,
-                   env={**os.environ, "PYTHONPATH": str(site)})
+    maps = 'open("/proc/self/maps").read()'
+    learns_from(site, f'"{site}/kelpie/_libraries/libsqlite3-" in {maps} and '
+                      f'"/libsqlite3.so" not in {maps}')

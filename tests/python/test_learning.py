@@ -234,5 +234,8 @@ def test_begins_with_what_is_known(log, learned, tmp_path):
                              ({"udot": {"u": np.nan}}, "u: has to be a finite coefficient")):
         with pytest.raises(ValueError, match=message):
             kelpie.DynamicsModel(**SMALL, nominal=nominal).fit(log.X[few], log.y[few], log.t[few])
+    others = {**SMALL, "targets": ["wdot", "qdot"]}
+    with pytest.raises(ValueError, match="^nominal: the model has the targets udot, vdot;"):
+        kelpie.DynamicsModel(**others, nominal=tmp_path / "before.json").fit(log.X[few], log.y[few])
     with pytest.raises(FileNotFoundError):
         kelpie.DynamicsModel(**SMALL, nominal="nothing.json").fit(log.X[few], log.y[few])

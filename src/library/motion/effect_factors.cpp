@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/eigen.hpp"
-#include "core/normal_equations.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/motion/attitude.hpp"
 #include "motion/free_fit.hpp"
@@ -19,8 +18,6 @@ namespace {
 
 // Chosen by hand.
 constexpr struct FactorTuning {
-  Eigen::Index pieces = 24;           // of a drive, whose scores count as independent
-  double student = 1.043;             // 0.95 quantile of Student's t, 23 degrees, over the normal's
   Eigen::Index most_windows = 20000;  // of the common fit, spread over all drives
   Eigen::Index windows_per_term = 5;
   std::size_t most_terms = 64;
@@ -161,7 +158,7 @@ double find_exponent(const std::vector<DriveWindows>& drives, const MotionTerms&
     std::vector<DriveWindows> tried = drives;
     apply_volts(tried, terms, reference, exponent);
     const double errors =
-        fit_freely(pooled(tried), kFactors.pieces).noise.diagonal().array().log().sum();
+        fit_freely(pooled(tried), kIndependentPieces).noise.diagonal().array().log().sum();
     if (errors < least) {
       least = errors;
       best = exponent;
@@ -234,10 +231,8 @@ std::vector<EffectFactor> factors_of(const WeakRows& rows, const FreeFit& common
   if (rows.terms.rows() < static_cast<Eigen::Index>(kFewestFactorWindows)) {
     return factors;
   }
-  const FreeFit fit = fit_freely(factor_rows(rows, common, effects, terms), kFactors.pieces);
-  const Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
-  const Eigen::VectorXd errors =
-      kFactors.student * (inverse * fit.scores * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
+  const FreeFit fit = fit_freely(factor_rows(rows, common, effects, terms), kIndependentPieces);
+  const Eigen::VectorXd errors = sandwich_errors(fit);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const bool is_told =
@@ -270,7 +265,7 @@ EffectFactors fit_factors(std::span<const DriveRows> drives, std::span<const std
   }
   EffectFactors found{.effects = effects_of(terms), .drives = {}};
   take_off_slow(windows, terms, found);
-  const FreeFit common = fit_freely(pooled(windows), kFactors.pieces);
+  const FreeFit common = fit_freely(pooled(windows), kIndependentPieces);
   for (const DriveWindows& drive : windows) {
     found.drives.push_back(factors_of(drive.weak, common, found.effects, terms));
   }

@@ -23,4 +23,12 @@ struct FreeFit {
 /// windows than terms.
 FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks = 0);
 
+/// Pieces of a log whose scores count as independent. Chosen by hand.
+constexpr Eigen::Index kIndependentPieces = 24;
+
+/// Standard errors of the coefficients of one axis, from a fit by kIndependentPieces: the roots of
+/// the diagonal of (FᵀWF)⁻¹ S (FᵀWF)⁻¹ with the covariance S of the scores (Liang & Zeger 1986),
+/// times the 0.95 quantile of Student's t with kIndependentPieces − 1 degrees over the normal's.
+Eigen::VectorXd sandwich_errors(const FreeFit& fit);
+
 }  // namespace kelpie

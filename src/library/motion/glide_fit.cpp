@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "core/normal_equations.hpp"
+#include "core/eigen.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/free_fit.hpp"
 
@@ -22,8 +22,6 @@ constexpr struct GlideTuning {
   double least_slope = 0.05;     // of tan γ: no attack grows beyond all bounds
   double most_attack_rad = 0.5;  // a stalled wing has no such lift
   int attack_rounds = 10;        // halve the error each
-  Eigen::Index pieces = 24;
-  double student = 1.043;  // 0.95 quantile of Student's t, 23 degrees, over the normal's
   int rounds = 25;
   double least_gain = 1e-5;  // of the squares: a smaller one ends the search
   GlideParameters step{1.0, 1e-3, 1e-1, 1.0, 1e-4, 0.1};  // of a derivative
@@ -136,14 +134,14 @@ GlideFit fit_glide(std::span<const GlideRows> parts, const GlideParameters& star
   GlideFit fit{.parameters = start};
   WeakRows rows = step_rows(parts, start, free);
   fit.rows = static_cast<std::size_t>(rows.terms.rows());
-  if (rows.terms.rows() <= 2 * kGlide.pieces) {
+  if (rows.terms.rows() <= 2 * kIndependentPieces) {
     throw InputError("too few rows with a vertical speed or a speed through the water: " +
-                     std::to_string(fit.rows) + ", more than " + std::to_string(2 * kGlide.pieces) +
-                     " are needed");
+                     std::to_string(fit.rows) + ", more than " +
+                     std::to_string(2 * kIndependentPieces) + " are needed");
   }
   FreeFit linear;
   for (int round = 0; round < kGlide.rounds; ++round) {
-    linear = fit_freely(rows, kGlide.pieces);
+    linear = fit_freely(rows, kIndependentPieces);
     const double usual = std::sqrt(linear.noise(0, 0));
     const double before = robust_squares(rows.acceleration.col(0), usual);
     double share = 1.0;
@@ -163,14 +161,21 @@ GlideFit fit_glide(std::span<const GlideRows> parts, const GlideParameters& star
       break;
     }
   }
-  linear = fit_freely(rows, kGlide.pieces);
-  const Eigen::MatrixXd inverse = equilibrated_inverse(linear.gram);
-  const Eigen::VectorXd errors =
-      kGlide.student * (inverse * linear.scores * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
+  linear = fit_freely(rows, kIndependentPieces);
+  const Eigen::VectorXd errors = sandwich_errors(linear);
   for (std::size_t k = 0; k < free.size(); ++k) {
     fit.errors[free[k]] = kGlide.step[free[k]] * errors(static_cast<Eigen::Index>(k));
   }
   return fit;
+}
+
+std::pair<double, double> fit_slope(std::span<const double> x, std::span<const double> y) {
+  const WeakRows rows{as_vector(y), as_vector(x), {}};
+  if (rows.terms.rows() < 2 * kIndependentPieces || !(rows.terms.squaredNorm() > 0.0)) {
+    return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  }
+  const FreeFit fit = fit_freely(rows, kIndependentPieces);
+  return {fit.coefficients(0, 0), sandwich_errors(fit)(0)};
 }
 
 }  // namespace kelpie

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kelpie {
@@ -63,5 +64,9 @@ GlideParameters first_glide();
 /// Student's t. Requires more rows with a speed than 48. Throws InputError on fewer. Allocates.
 GlideFit fit_glide(std::span<const GlideRows> parts, const GlideParameters& start,
                    std::span<const std::size_t> free);
+
+/// The slope of y over x through 0 with Huber's weights, and the error by the same sandwich. NaN
+/// where fewer than 48 pairs are given, or x is 0 throughout. Requires equal sizes. Allocates.
+std::pair<double, double> fit_slope(std::span<const double> x, std::span<const double> y);
 
 }  // namespace kelpie

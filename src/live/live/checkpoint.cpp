@@ -110,9 +110,10 @@ DynamicsModel model_to_begin_with(const Configuration& configuration,
   if (!saved) {
     DynamicsModel model = fresh();
     if (!configuration.live.nominal.empty()) {
-      study::give(study::nominal_of(format::read_model(configuration.live.nominal),
-                                    configuration.plan.targets, model.mechanisms(0).terms()),
-                  model);
+      study::give(
+          study::nominal_of(format::read_model(configuration.live.nominal),
+                            configuration.plan.targets, model.mechanisms(0).terms(), "--nominal"),
+          model);
     }
     return model;
   }

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "file/shared_file.hpp"
+#include "file/mapped_file.hpp"
 #include "kelpie/model/live_alignment.hpp"
 #include "kelpie/model/shared_model.hpp"
 #include "live/authority_reporter.hpp"

@@ -16,9 +16,9 @@
 #include <utility>
 
 #include "bag/child_process.hpp"
-#include "bag/mapped_file.hpp"
 #include "bag/mat_elements.hpp"
 #include "bag/tuning.hpp"
+#include "file/mapped_file.hpp"
 #endif
 
 namespace kelpie::bag {
@@ -248,7 +248,7 @@ void read_with_matio(const std::filesystem::path& file, const TakeArray& take,
   }
   const bool is_version_5 = Mat_GetVersion(mat.get()) == MAT_FT_MAT5;
   const std::size_t due =
-      is_version_5 ? sound_mat_variables(MappedFile(file).bytes(), file.string(), lose) : 0;
+      is_version_5 ? sound_mat_variables(file::MappedFile(file).bytes(), file.string(), lose) : 0;
   MatCollector collector(file, take, lose);
   std::size_t read = 0;
   while (read < due || !is_version_5) {

@@ -10,7 +10,6 @@
 #include "bag/alog_reader.hpp"
 #include "bag/byte_reader.hpp"
 #include "bag/dataflash_reader.hpp"
-#include "bag/mapped_file.hpp"
 #include "bag/mat_reader.hpp"
 #include "bag/mcap_reader.hpp"
 #include "bag/metadata.hpp"
@@ -21,6 +20,7 @@
 #include "bag/ulog_reader.hpp"
 #include "core/text.hpp"
 #include "file/content.hpp"
+#include "file/mapped_file.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -106,7 +106,8 @@ Reader open_file(const fs::path& file, ReadMode mode, const RowTimes& times) {
   if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
     refuse(file, "is a pipe or a device; a bag has to be a file");
   }
-  const auto content = std::make_shared<MappedFile>(file);  // throws where there is no such file
+  const auto content =
+      std::make_shared<file::MappedFile>(file);  // throws where there is no such file
   const FileKind& kind = required_kind(beginning_of(file), file);
   if (kind.read_file != nullptr) {
     return kind.read_file(file, mode, times);
@@ -177,7 +178,7 @@ class FolderReader final : public MessageReader {
 
   void find_files(const fs::path& folder) {
     std::error_code error;
-    fs::directory_iterator entries(folder, error);
+    const fs::directory_iterator entries(folder, error);
     if (error) {
       refuse(folder, "cannot be read: " + error.message());
     }

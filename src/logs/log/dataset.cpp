@@ -443,4 +443,28 @@ Dataset make_commands(const Table& table, const Roles& roles,
   return data;
 }
 
+std::optional<std::size_t> Dataset::find_input(std::string_view name) const {
+  const auto found = std::ranges::find(input_names, name);
+  return found == input_names.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - input_names.begin()));
+}
+
+std::size_t Dataset::require_input(const std::string& name, const std::string& need) const {
+  const std::optional<std::size_t> found = find_input(name);
+  if (!found) {
+    throw InputError({.file = source, .line = 0, .field = name}, need + ", but is no input");
+  }
+  return *found;
+}
+
+std::size_t Dataset::require_input_of(std::string_view option, const std::string& name) const {
+  const std::optional<std::size_t> found = find_input(name);
+  if (!found) {
+    throw InputError(option, "'" + name + "' is no input" + did_you_mean(name, input_names) +
+                                 "; inputs are " + join_text(input_names, ", "));
+  }
+  return *found;
+}
+
 }  // namespace kelpie::log

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -120,6 +121,12 @@ struct Dataset {
   std::span<const double> target(std::size_t row) const {
     return std::span(targets).subspan(row * target_names.size(), target_names.size());
   }
+  /// Place of the input of that name, if an input has it.
+  std::optional<std::size_t> find_input(std::string_view name) const;
+  /// The same. Throws InputError (source, name) "`need`, but is no input".
+  std::size_t require_input(const std::string& name, const std::string& need) const;
+  /// The same of a name that an option gave. Throws InputError (option), with the inputs there are.
+  std::size_t require_input_of(std::string_view option, const std::string& name) const;
 };
 
 /// Roles of the columns. At most one of `time` and `rate_hz` is given.

@@ -16,6 +16,7 @@
 #include "core/text.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "log/ardusub.hpp"
+#include "log/draft_pose.hpp"
 #include "log/tuning.hpp"
 #include "motion/signal_names.hpp"
 #include "stream/tuning.hpp"
@@ -562,69 +563,9 @@ class Planner {
         is_angles && is_in_degrees ? ", angles = \"deg\"" : ""));
   }
 
-  // The parts of a pose that one topic, or a table, has by name.
-  std::map<std::string, CandidateColumn> pose_of(const bag::TopicReport& topic) const {
-    constexpr std::array<std::string_view, 14> kOther{
-        "cmd",   "command", "desired",  "ref",   "target", "setpoint", "rate",
-        "speed", "vel",     "velocity", "accel", "true",   "error",    "covariance"};
-    std::map<std::string, CandidateColumn> parts;
-    const auto is_plain = [](const std::string& name) {
-      return can_be_written(name) && name.find_first_of("\"\\") == std::string::npos;
-    };
-    for (const bag::FieldRange& field : topic.fields) {
-      const std::vector<std::string> words = words_of(field.path);
-      const bool is_other = std::ranges::any_of(words, [&](const std::string& word) {
-        return std::ranges::find(kOther, word) != kOther.end();
-      });
-      const std::optional<std::string> part = is_other || field.finite == 0 ||
-                                                      !field.elements.empty() ||
-                                                      !is_plain(field.path) || !is_plain(topic.name)
-                                                  ? std::nullopt
-                                                  : pose_part_by_name(field.path);
-      if (part) {
-        parts.try_emplace(
-            *part, CandidateColumn{
-                       .name = topic.name.empty() ? field.path : topic.name + ":" + field.path,
-                       .topic = topic.name,
-                       .unit = field.unit,
-                       .low = field.low,
-                       .high = field.high,
-                       .rate_hz = topic.rate_hz * static_cast<double>(field.finite) /
-                                  static_cast<double>(std::max<std::size_t>(topic.messages, 1)),
-                       .stamps = topic.clock_offset});
-      }
-    }
-    const bool is_quaternion = parts.contains("qw") && parts.contains("qx") &&
-                               parts.contains("qy") && parts.contains("qz");
-    std::erase_if(parts, [&](const auto& part) {
-      const bool is_angle = part.first.size() > 1 && part.first[0] != 'q';
-      return is_quaternion ? is_angle : part.first[0] == 'q';
-    });
-    const bool has_plane =
-        parts.contains("x") && parts.contains("y") && (is_quaternion || parts.contains("yaw"));
-    if (!has_plane) {
-      parts.erase("x");
-      parts.erase("y");
-    }
-    const bool moves = std::ranges::any_of(parts, [](const auto& part) {
-      return part.second.varies() && part.first != "roll" && part.first != "pitch";
-    });
-    return moves ? parts : std::map<std::string, CandidateColumn>{};
-  }
-
   // Where no velocity is known, poses tell the motion.
   void take_pose() {
-    std::map<std::string, CandidateColumn> best;
-    std::vector<std::string> rivals;
-    for (const bag::TopicReport& topic : report_.topics) {
-      std::map<std::string, CandidateColumn> parts = pose_of(topic);
-      if (parts.size() > best.size()) {
-        best = std::move(parts);
-        rivals = {topic.name};
-      } else if (!parts.empty() && parts.size() == best.size()) {
-        rivals.push_back(topic.name);
-      }
-    }
+    const auto [best, rivals] = choose_pose(report_);
     if (rivals.size() > 1) {
       plan_.open.push_back(fmt::format("poses: {}: which of them?", join_text(rivals, ", or ")));
       asked_.insert(Part::velocity);

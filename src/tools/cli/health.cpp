@@ -123,29 +123,24 @@ struct Reader {
   }
 };
 
-// Days of the logs' time 0, from their first and last times [s]. Without dates, logs follow each
-// other at once.
-struct LogDays {
-  std::vector<double> days{};
-  bool is_dated = false;
-};
-
-LogDays days_of(const std::vector<Mission>& missions,
-                const std::vector<std::pair<double, double>>& times_s) {
+// Sets the days of the logs' time 0, from their first and last times [s], and returns whether they
+// are dates. Without dates, logs follow each other at once.
+template <typename Log>
+bool set_days(std::vector<Log>& logs, const std::vector<Mission>& missions,
+              const std::vector<std::pair<double, double>>& times_s) {
   const bool in_stamps =
       std::ranges::all_of(times_s, [](const auto& times) { return times.first > kUnixTime; });
-  LogDays found;
-  found.is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
-                     return std::isfinite(mission.day);
-                   });
+  const bool is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
+                          return std::isfinite(mission.day);
+                        });
   double end = 0.0;
   for (std::size_t i = 0; i < missions.size(); ++i) {
-    found.days.push_back(in_stamps        ? 0.0
-                         : found.is_dated ? missions[i].day
-                                          : end - times_s[i].first / health::kSecondsPerDay);
-    end = found.days.back() + times_s[i].second / health::kSecondsPerDay;
+    logs[i].day = in_stamps  ? 0.0
+                  : is_dated ? missions[i].day
+                             : end - times_s[i].first / health::kSecondsPerDay;
+    end = logs[i].day + times_s[i].second / health::kSecondsPerDay;
   }
-  return found;
+  return is_dated;
 }
 
 std::vector<health::Baseline> baselines_of(const HealthArguments& options) {
@@ -169,11 +164,7 @@ health::HealthTable judge_drives(const HealthArguments& options,
     logs.push_back({.data = reader.read(mission.file), .mission = mission.name});
     times_s.emplace_back(logs.back().data.times_s.front(), logs.back().data.times_s.back());
   }
-  const LogDays found = days_of(missions, times_s);
-  is_dated = found.is_dated;
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    logs[i].day = found.days[i];
-  }
+  is_dated = set_days(logs, missions, times_s);
   const log::Dataset& first = logs.front().data;
   health::DriveColumns columns{
       .velocities = find_states(reader.first->settings.shared.states, first.input_names,
@@ -209,17 +200,12 @@ health::HealthTable judge_gliders(const HealthArguments& options,
     times_s.emplace_back(times.front(), times.back());
     logs.push_back({.table = std::move(table), .mission = mission.name});
   }
-  const LogDays found = days_of(missions, times_s);
-  is_dated = found.is_dated;
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    logs[i].day = found.days[i];
-  }
-  health::HealthTable judged = health::judge_gliders(logs, columns);
-  if (options.writes_glides) {
-    const std::vector<log::Table> tables = health::glide_tables(logs, columns);
-    for (std::size_t i = 0; i < logs.size(); ++i) {
-      files[logs[i].mission + kGlideEnding] = log::csv_text(tables[i]);
-    }
+  is_dated = set_days(logs, missions, times_s);
+  std::vector<log::Table> glides;
+  health::HealthTable judged =
+      health::judge_gliders(logs, columns, options.writes_glides ? &glides : nullptr);
+  for (std::size_t i = 0; i < glides.size(); ++i) {
+    files[logs[i].mission + kGlideEnding] = log::csv_text(glides[i]);
   }
   return judged;
 }
@@ -257,12 +243,13 @@ void run_health(const HealthArguments& options) {
     cards.push_back(card_of(options, vehicle, missions, baselines, files));
   }
   const file::OutFolder out = take_out_folder(options.out, names, inputs);
-  files[kHealthJson] = health::cards_json(cards);
+  const std::string json = health::cards_json(cards);
+  files[kHealthJson] = json;
   files[kHealthHtml] = report::health_html(cards);
   file::write_files_whole(out.path(), files);
   Answer answer{.verdict = report::health_verdict(cards),
                 .tables = report::health_tables(cards),
-                .document = options.answer.json ? health::cards_json(cards) : "",
+                .document = options.answer.json ? json : "",
                 .files = {},
                 .next = {}};
   answer.add_files(files, out.path());

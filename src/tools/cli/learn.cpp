@@ -95,7 +95,7 @@ study::Nominal nominal_of(const std::string& file, const LearnArguments& options
   const SharedSettings& settings = plan.settings.shared;
   const TermSet terms = TermSet::from(settings.terms, data.input_names, data.target_names.size());
   if (fs::path(file).extension() != ".toml") {
-    return study::nominal_of(format::read_model(file), data.target_names, terms);
+    return study::nominal_of(format::read_model(file), data.target_names, terms, "--nominal");
   }
   const std::size_t states =
       find_states(settings.states, data.input_names, data.target_names.size()).size();

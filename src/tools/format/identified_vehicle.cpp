@@ -13,6 +13,7 @@
 #include "core/text.hpp"
 #include "format/tuning.hpp"
 #include "kelpie/core/error.hpp"
+#include "study/six_axes.hpp"
 #include "study/tuning.hpp"
 #include "vehicle/dynamics.hpp"
 #include "vehicle/simulator.hpp"
@@ -159,9 +160,8 @@ vehicle::Vector6 velocity_of(const DriveColumns& columns, std::span<const double
   vehicle::Vector6 velocity = vehicle::Vector6::Zero();
   for (std::size_t axis = 0; axis < columns.velocities.size(); ++axis) {
     if (columns.velocities[axis]) {
-      const bool turns = frame == Frame::flu && axis != 0 && axis != 3;
       velocity(static_cast<Eigen::Index>(axis)) =
-          (turns ? -1.0 : 1.0) * inputs[*columns.velocities[axis]];
+          study::sign_in_frd(frame, axis) * inputs[*columns.velocities[axis]];
     }
   }
   return velocity;

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "file/atomic_file.hpp"
-#include "file/shared_file.hpp"
+#include "file/mapped_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "model/dynamics_axis.hpp"

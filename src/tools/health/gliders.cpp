@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -134,29 +133,9 @@ Places dive_places(const GliderColumns& columns) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The slope of y over x through 0, and its error by pieces that count as independent.
 Estimate slope_of(const std::vector<double>& x, const std::vector<double>& y) {
-  constexpr std::size_t kPieces = 24;
-  constexpr double kStudent = 1.043;  // 0.95 quantile of Student's t, 23 degrees, over the normal's
-  double xx = 0.0;
-  double xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += x[i] * x[i];
-    xy += x[i] * y[i];
-  }
-  if (x.size() < 2 * kPieces || !(xx > 0.0)) {
-    return {kNan, kNan};
-  }
-  double squares = 0.0;
-  for (std::size_t piece = 0; piece < kPieces; ++piece) {
-    double score = 0.0;
-    for (std::size_t i = piece * x.size() / kPieces; i < (piece + 1) * x.size() / kPieces; ++i) {
-      score += x[i] * (y[i] - xy / xx * x[i]);
-    }
-    squares += score * score;
-  }
-  const auto pieces = static_cast<double>(kPieces);
-  return {xy / xx, kStudent * std::sqrt(squares * pieces / (pieces - 1.0)) / xx};
+  const auto [slope, error] = fit_slope(x, y);
+  return {slope, error};
 }
 
 // Pitch as a plane over the shifting mass and the ballast, by all logs: place and slope of each.
@@ -282,49 +261,86 @@ std::size_t half_of(const GlideRows& rows) {
                                   rows.times_s.begin());
 }
 
-// Runs `score`; where rows don't suffice there is no remark.
-void remark(HealthTable& table, const std::function<std::string()>& score) {
+// The glider that the first half of a log tells; `refusal` tells why there is none.
+struct HalfFit {
+  std::size_t begin = 0;  // row of the second half
+  GlideParameters parameters{};
+  std::string refusal{};
+};
+
+HalfFit fit_half(const GlideRows& rows, const GliderColumns& columns) {
+  HalfFit half{.begin = half_of(rows)};
+  const std::array first{part_of(rows, 0, half.begin)};
   try {
-    table.remarks.push_back(score());
-  } catch (const InputError&) {
-    return;
+    half.parameters = fit_glide(first, first_glide(), common_places(columns)).parameters;
+  } catch (const InputError& error) {
+    half.refusal = error.what();
   }
+  return half;
 }
 
+// Where rows don't suffice there is no remark.
 void remark_on_scores(const std::vector<GliderLog>& logs, const std::vector<GliderRows>& rows,
-                      const GliderColumns& columns, HealthTable& table) {
-  const Places all = common_places(columns);
+                      const std::vector<HalfFit>& halves, const GliderColumns& columns,
+                      HealthTable& table) {
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const GlideRows& own = rows[i].glide;
-    remark(table, [&] {
-      const std::size_t half = half_of(own);
-      const std::array first{part_of(own, 0, half)};
-      return logs[i].mission + ", second half after learning the first: " +
-             score_text(own, fit_glide(first, first_glide(), all).parameters, half);
-    });
+    if (halves[i].refusal.empty()) {
+      table.remarks.push_back(logs[i].mission + ", second half after learning the first: " +
+                              score_text(own, halves[i].parameters, halves[i].begin));
+    }
     const auto dives = find_dives(own.depth_m);
     if (logs.size() < 2 || dives.empty()) {
       continue;
     }
-    remark(table, [&] {
-      std::vector<GlideRows> others;
-      for (std::size_t k = 0; k < logs.size(); ++k) {
-        if (k != i) {
-          others.push_back(rows[k].glide);
-        }
+    std::vector<GlideRows> others;
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+      if (k != i) {
+        others.push_back(rows[k].glide);
       }
-      Places adapted = dive_places(columns);
-      if (!columns.sinking.empty()) {
-        adapted.push_back(GlidePlace::lag);
-      }
-      const GlideParameters start = fit_glide(others, first_glide(), all).parameters;
+    }
+    Places adapted = dive_places(columns);
+    if (!columns.sinking.empty()) {
+      adapted.push_back(GlidePlace::lag);
+    }
+    try {
+      const GlideParameters start =
+          fit_glide(others, first_glide(), common_places(columns)).parameters;
       const std::size_t end = dives.front().second;
       const std::array first{part_of(own, 0, end)};
-      return fmt::format("{}, by the other logs' glider: {}; adapted to the first dive: {}",
-                         logs[i].mission, score_text(own, start, 0),
-                         score_text(own, fit_glide(first, start, adapted).parameters, end));
-    });
+      const GlideParameters own_glider = fit_glide(first, start, adapted).parameters;
+      table.remarks.push_back(fmt::format(
+          "{}, by the other logs' glider: {}; adapted to the first dive: {}", logs[i].mission,
+          score_text(own, start, 0), score_text(own, own_glider, end)));
+    } catch (const InputError&) {
+      continue;
+    }
   }
+}
+
+// A log's rows with all columns, the speeds of the half's glider, and which half a row is of.
+log::Table glide_table(const GliderLog& log, const GliderRows& rows, const HalfFit& half) {
+  if (!half.refusal.empty()) {
+    throw InputError({.file = log.table.source, .line = 0, .field = {}}, half.refusal);
+  }
+  log::Table table;
+  table.source = log.table.source;
+  table.names = log.table.names;
+  for (const std::vector<double>& column : log.table.columns) {
+    std::vector<double>& values = table.columns.emplace_back();
+    std::ranges::transform(rows.rows, std::back_inserter(values),
+                           [&](std::size_t row) { return column[row]; });
+  }
+  for (std::size_t row = 0; row < rows.rows.size(); ++row) {
+    table.lines.push_back(row + 2);
+  }
+  const GlideMotion motion = glide(rows.glide, half.parameters);
+  table.names.insert(table.names.end(), {"glide_sinking", "glide_speed", "second_half"});
+  table.columns.push_back(motion.sinking);
+  table.columns.push_back(motion.speed);
+  std::vector<double>& held = table.columns.emplace_back(rows.rows.size(), 1.0);
+  std::fill_n(held.begin(), half.begin, 0.0);
+  return table;
 }
 
 // The estimates of a dive, in the order of the quantities.
@@ -405,12 +421,15 @@ std::vector<std::string> columns_of(const GliderColumns& columns) {
   return names;
 }
 
-HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumns& columns) {
+HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumns& columns,
+                          std::vector<log::Table>* glides) {
   std::vector<GliderRows> rows;
   std::vector<GlideRows> all;
+  std::vector<HalfFit> halves;
   for (const GliderLog& log : logs) {
     rows.push_back(rows_of(log.table, columns));
     all.push_back(rows.back().glide);
+    halves.push_back(fit_half(all.back(), columns));
   }
   GlideFit common;
   try {
@@ -440,41 +459,11 @@ HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumn
       fmt::format("lag of the speeds {:.0f} s, drag {:.0f} ml s²/m², {:.2g} of the lift's slope",
                   common.parameters[GlidePlace::lag], common.parameters[GlidePlace::drag],
                   common.parameters[GlidePlace::attack]));
-  remark_on_scores(logs, rows, columns, table);
-  return table;
-}
-
-std::vector<log::Table> glide_tables(const std::vector<GliderLog>& logs,
-                                     const GliderColumns& columns) {
-  std::vector<log::Table> tables;
-  for (const GliderLog& log : logs) {
-    const GliderRows rows = rows_of(log.table, columns);
-    const std::size_t half = half_of(rows.glide);
-    const std::array first{part_of(rows.glide, 0, half)};
-    log::Table& table = tables.emplace_back();
-    table.source = log.table.source;
-    table.names = log.table.names;
-    for (const std::vector<double>& column : log.table.columns) {
-      std::vector<double>& values = table.columns.emplace_back();
-      std::ranges::transform(rows.rows, std::back_inserter(values),
-                             [&](std::size_t row) { return column[row]; });
-    }
-    for (std::size_t row = 0; row < rows.rows.size(); ++row) {
-      table.lines.push_back(row + 2);
-    }
-    try {
-      const GlideMotion motion =
-          glide(rows.glide, fit_glide(first, first_glide(), common_places(columns)).parameters);
-      table.names.insert(table.names.end(), {"glide_sinking", "glide_speed", "second_half"});
-      table.columns.push_back(motion.sinking);
-      table.columns.push_back(motion.speed);
-    } catch (const InputError& error) {
-      throw InputError({.file = log.table.source, .line = 0, .field = {}}, error.what());
-    }
-    std::vector<double>& held = table.columns.emplace_back(rows.rows.size(), 1.0);
-    std::fill_n(held.begin(), half, 0.0);
+  remark_on_scores(logs, rows, halves, columns, table);
+  for (std::size_t i = 0; glides != nullptr && i < logs.size(); ++i) {
+    glides->push_back(glide_table(logs[i], rows[i], halves[i]));
   }
-  return tables;
+  return table;
 }
 
 }  // namespace kelpie::health

@@ -43,15 +43,11 @@ struct GliderLog {
 /// ballast make, and the turn rate over roll times sinking. The remarks tell R² of the vertical
 /// speed and the root mean square error of the speed: on the second half of each log after learning
 /// the first, and of each log after the first dive, by the other logs' parameters adapted to that
-/// dive. Rows without finite pitch, ballast and depth are left out. Throws InputError naming the
-/// log.
-HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumns& columns);
-
-/// Each log's rows with pitch, ballast and depth, with all columns and three more: glide_sinking
-/// and glide_speed, by the glider that the first half of the log tells, and second_half, 1 in the
-/// rows of the second half. For `kelpie learn`, which learns the rest. Throws InputError naming the
-/// log.
-std::vector<log::Table> glide_tables(const std::vector<GliderLog>& logs,
-                                     const GliderColumns& columns);
+/// dive. Rows without finite pitch, ballast and depth are left out. `glides`, where given, gets
+/// each log's other rows with all columns and three more, for `kelpie learn`, which learns the
+/// rest: glide_sinking and glide_speed, by the glider that the first half of the log tells, and
+/// second_half, 1 in the rows of the second half. Throws InputError naming the log.
+HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumns& columns,
+                          std::vector<log::Table>* glides = nullptr);
 
 }  // namespace kelpie::health

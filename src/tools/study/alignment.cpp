@@ -105,12 +105,7 @@ log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
   }
   std::vector<std::size_t> commands;
   for (const std::string& name : alignment.commands) {
-    const auto found = std::ranges::find(data.input_names, name);
-    if (found == data.input_names.end()) {
-      throw InputError({.file = data.source, .line = 0, .field = name},
-                       "is to be shifted, but is no input");
-    }
-    commands.push_back(static_cast<std::size_t>(found - data.input_names.begin()));
+    commands.push_back(data.require_input(name, "is to be shifted"));
   }
   const int most = static_cast<int>(data.rows());
   AlignedRows rows(std::clamp(alignment.rows_at(data.rate_hz), -most, most), commands,

@@ -14,19 +14,6 @@
 #include "study/baselines.hpp"
 
 namespace kelpie::study {
-namespace {
-
-std::size_t input_called(const log::Dataset& data, const std::string& name) {
-  const auto found = std::ranges::find(data.input_names, name);
-  if (found == data.input_names.end()) {
-    throw InputError({.file = data.source, .line = 0, .field = name},
-                     "is needed to take off the current, but is no input");
-  }
-  return static_cast<std::size_t>(found - data.input_names.begin());
-}
-
-}  // namespace
-
 CurrentResult choose_current(const log::Dataset& data, const Split& split,
                              const std::string& states, const Alignment& alignment) {
   if (data.headings.empty()) {
@@ -48,9 +35,10 @@ log::Dataset through_water(log::Dataset data, const Current& current) {
     return data;
   }
   data = without_inputs(std::move(data), {current.heading});
-  const std::size_t surge = input_called(data, current.surge);
-  const std::size_t sway = input_called(data, current.sway);
-  const std::size_t yaw_rate = input_called(data, current.yaw_rate);
+  const std::size_t surge = data.require_input(current.surge, "is needed to take off the current");
+  const std::size_t sway = data.require_input(current.sway, "is needed to take off the current");
+  const std::size_t yaw_rate =
+      data.require_input(current.yaw_rate, "is needed to take off the current");
   for (std::size_t row = 0; row < data.rows(); ++row) {
     if (row >= data.headings.size() || !std::isfinite(data.headings[row])) {
       throw InputError({.file = data.source, .line = 0, .field = current.heading},

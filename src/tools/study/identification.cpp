@@ -28,13 +28,7 @@ std::vector<std::size_t> find_thrusters(const log::Dataset& data,
                                         const std::vector<std::string>& wanted) {
   std::vector<std::size_t> thrusters;
   for (const std::string& name : wanted) {
-    const auto found = std::ranges::find(data.input_names, name);
-    if (found == data.input_names.end()) {
-      throw InputError("--thrusters", "'" + name + "' is no input" +
-                                          did_you_mean(name, data.input_names) + "; inputs are " +
-                                          join_text(data.input_names, ", "));
-    }
-    thrusters.push_back(static_cast<std::size_t>(found - data.input_names.begin()));
+    thrusters.push_back(data.require_input_of("--thrusters", name));
   }
   if (!wanted.empty()) {
     return thrusters;

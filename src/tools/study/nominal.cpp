@@ -37,10 +37,6 @@ std::vector<std::optional<std::size_t>> axes_of_targets(const log::Dataset& data
   return axes;
 }
 
-double sign_in(Frame frame, std::size_t axis) {
-  return frame == Frame::flu && axis != 0 && axis != 3 ? -1.0 : 1.0;
-}
-
 // The accelerations of a vehicle file on the inputs of a log.
 class VehicleOnInputs {
  public:
@@ -56,12 +52,10 @@ class VehicleOnInputs {
     }
     std::vector<std::string> names;
     for (const vehicle::Thruster& thruster : vehicle.thrusters) {
-      const auto found = std::ranges::find(data.input_names, thruster.name);
       names.push_back(thruster.name);
-      inputs_.push_back(static_cast<std::size_t>(found - data.input_names.begin()));
+      inputs_.push_back(data.find_input(thruster.name));
     }
-    require(std::ranges::any_of(inputs_, [&](std::size_t i) { return i < axes_.size(); }),
-            "--nominal",
+    require(std::ranges::any_of(inputs_, &std::optional<std::size_t>::has_value), "--nominal",
             "the vehicle's thrusters are " + join_text(names, ", ") +
                 "; none is among the inputs " + join_text(data.input_names, ", "));
   }
@@ -73,7 +67,7 @@ class VehicleOnInputs {
     vehicle::Vector6 velocity = vehicle::Vector6::Zero();
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (axes_[i]) {
-        velocity(static_cast<Eigen::Index>(*axes_[i])) = sign_in(frame_, *axes_[i]) * x[i];
+        velocity(static_cast<Eigen::Index>(*axes_[i])) = sign_in_frd(frame_, *axes_[i]) * x[i];
       }
     }
     const auto [forward, right, down] = down_of(attitude_, x, frame_);
@@ -81,7 +75,7 @@ class VehicleOnInputs {
                                                              Eigen::Vector3d::UnitZ());
     vehicle::Vector6 result = dynamics_.acceleration(attitude, velocity, rotor_speeds(x));
     for (Eigen::Index axis = 0; axis < result.size(); ++axis) {
-      result(axis) *= sign_in(frame_, static_cast<std::size_t>(axis));
+      result(axis) *= sign_in_frd(frame_, static_cast<std::size_t>(axis));
     }
     return result;
   }
@@ -91,10 +85,10 @@ class VehicleOnInputs {
     vehicle::RotorSpeeds speeds =
         vehicle::RotorSpeeds::Zero(static_cast<Eigen::Index>(inputs_.size()));
     for (std::size_t k = 0; k < inputs_.size(); ++k) {
-      if (inputs_[k] < x.size()) {
+      if (inputs_[k]) {
         const vehicle::Thruster& thruster = vehicle_.thrusters[k];
         const double command =
-            thruster.max_speed_rps * command_share(vehicle_, k, x[inputs_[k]], neutral_);
+            thruster.max_speed_rps * command_share(vehicle_, k, x[*inputs_[k]], neutral_);
         speeds(static_cast<Eigen::Index>(k)) = vehicle::speed_for_command(thruster, command);
       }
     }
@@ -106,20 +100,20 @@ class VehicleOnInputs {
   Attitude attitude_;
   Frame frame_;
   double neutral_;
-  std::vector<std::optional<std::size_t>> axes_;  // of each input
-  std::vector<std::size_t> inputs_;               // of each thruster; beyond the last: none
+  std::vector<std::optional<std::size_t>> axes_;    // of each input
+  std::vector<std::optional<std::size_t>> inputs_;  // of each thruster
 };
 
-const SvrFunction& line_of(const Snapshot& axis) {
+const SvrFunction& line_of(const Snapshot& axis, std::string_view option) {
   const auto found = std::ranges::find(axis.function.members, "line", &FunctionMix::Member::name);
-  require(found != axis.function.members.end(), "--nominal",
+  require(found != axis.function.members.end(), option,
           "the model has no member 'line', as a model of learner = svr");
   return found->function;
 }
 
 std::vector<Coefficient> coefficients_of(const TrainedModel& model, const Snapshot& axis,
-                                         const TermSet& terms) {
-  const SvrFunction& line = line_of(axis);
+                                         const TermSet& terms, std::string_view option) {
+  const SvrFunction& line = line_of(axis, option);
   const AxisScaling& scaling = axis.scaling;
   const std::vector<std::string> known = terms.texts();
   std::vector<Coefficient> list{
@@ -136,17 +130,17 @@ std::vector<Coefficient> coefficients_of(const TrainedModel& model, const Snapsh
 }  // namespace
 
 Nominal nominal_of(const TrainedModel& model, std::span<const std::string> targets,
-                   const TermSet& terms) {
+                   const TermSet& terms, std::string_view option) {
   Nominal nominal(targets.size());
   const std::vector<std::string> names = model.target_names();
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const auto found = std::ranges::find(names, targets[i]);
     if (found != names.end()) {
       const auto axis = static_cast<std::size_t>(found - names.begin());
-      nominal[i] = coefficients_of(model, model.axes[axis], terms);
+      nominal[i] = coefficients_of(model, model.axes[axis], terms, option);
     }
   }
-  require(std::ranges::any_of(nominal, [](const auto& one) { return !one.empty(); }), "--nominal",
+  require(std::ranges::any_of(nominal, [](const auto& one) { return !one.empty(); }), option,
           "the model has the targets " + join_text(names, ", ") + "; the log has " +
               join_text(targets, ", "));
   return nominal;

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kelpie/learner/regressor.hpp"
@@ -21,9 +22,9 @@ using Nominal = std::vector<std::vector<Coefficient>>;
 
 /// Coefficients of the member `line` of an earlier model, of targets with these names. Terms
 /// that are not among `terms` are left out, since an input of theirs is missing. Throws InputError
-/// on a model without this member (`learner = svr`), or without any of the targets.
+/// (`option`) on a model without this member (`learner = svr`), or without any of the targets.
 Nominal nominal_of(const TrainedModel& model, std::span<const std::string> targets,
-                   const TermSet& terms);
+                   const TermSet& terms, std::string_view option);
 
 /// The terms fitted to the accelerations of a vehicle file at 4,000 places: each velocity and
 /// command from a row of the log of its own, the attitude from another. Exact for an equation of

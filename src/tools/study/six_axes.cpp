@@ -128,21 +128,15 @@ std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const s
     why = "no roll and pitch";
   }
   for (const vehicle::Thruster& thruster : vehicle.thrusters) {
-    const auto found = std::ranges::find(data.input_names, thruster.name);
-    if (found == data.input_names.end()) {
+    const std::optional<std::size_t> found = data.find_input(thruster.name);
+    if (!found) {
       why = "no command of the vehicle file's thruster '" + thruster.name + "'";
       break;
     }
-    columns.thrusters.push_back(static_cast<std::size_t>(found - data.input_names.begin()));
+    columns.thrusters.push_back(*found);
   }
   if (!volts.empty()) {
-    const auto found = std::ranges::find(data.input_names, volts);
-    if (found == data.input_names.end()) {
-      throw InputError("--volts", "'" + volts + "' is no input" +
-                                      did_you_mean(volts, data.input_names) + "; inputs are " +
-                                      join_text(data.input_names, ", "));
-    }
-    columns.volts = static_cast<std::size_t>(found - data.input_names.begin());
+    columns.volts = data.require_input_of("--volts", volts);
   }
   return why.empty() ? std::optional(columns) : std::nullopt;
 }
@@ -164,8 +158,7 @@ SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_
     const std::span<const double> inputs = data.input(row);
     six.times_s.push_back(data.times_s[row]);
     for (std::size_t axis = 0; axis < kSixAxes; ++axis) {
-      const bool turns = frame == Frame::flu && axis != 0 && axis != 3;
-      six.velocities.push_back((turns ? -1.0 : 1.0) * inputs[columns.velocities[axis]]);
+      six.velocities.push_back(sign_in_frd(frame, axis) * inputs[columns.velocities[axis]]);
     }
     const std::array<double, 3> down = down_of(columns.attitude, inputs, frame);
     six.down.insert(six.down.end(), down.begin(), down.end());
@@ -244,7 +237,7 @@ Identification identify_six_axes(const log::Dataset& data, const Split& split,
                  six_axis_rows(data, held_out, columns, vehicle, frame, neutral), found);
   // Targets are of the log's frame.
   for (std::size_t axis = 0; axis < kSixAxes; ++axis) {
-    if (frame == Frame::flu && axis != 0 && axis != 3) {
+    if (sign_in_frd(frame, axis) < 0.0) {
       for (std::vector<double>* values :
            {&found.held_out.structure[axis], &found.held_out.free[axis]}) {
         std::ranges::transform(*values, values->begin(), std::negate());

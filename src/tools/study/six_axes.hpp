@@ -30,6 +30,11 @@ struct SixAxisColumns {
   std::optional<std::size_t> volts{};    ///< input: supply of the thrusters
 };
 
+/// The sign of a body axis' velocities and accelerations in FRD, over those in `frame`, FLU or FRD.
+constexpr double sign_in_frd(Frame frame, std::size_t axis) {
+  return frame == Frame::flu && axis != 0 && axis != 3 ? -1.0 : 1.0;
+}
+
 /// The columns, if the log has six velocities with targets, an attitude, and a command for each
 /// thruster of the vehicle, by name; otherwise none, and `why` says what is missing. Throws
 /// InputError (--volts) on a name that is no input.

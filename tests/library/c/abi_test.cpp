@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs in C that were compiled with the last release go on with this library: what kelpie.h
 // declared then is declared still, with the same sizes. tests/library/c/abi.txt is the record; a
-// release writes the record anew: KELPIE_RECORD_ABI=1 build/release/test_c --gtest_filter='Abi.*'.
+// release writes the record anew: KELPIE_RECORD_ABI=1 build/release/test_core
+// --gtest_filter='Abi.*'.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -153,7 +153,8 @@ TEST(McapReader, EveryFlippedBitOfAnotherWritersFileIsSurvived) {
   const bag::MessageDefinitions definitions;
   for (const char* const name : {"plain.mcap", "chunks.mcap", "zstd.mcap", "lz4.mcap"}) {
     const std::string whole = fixture(name);
-    for (std::size_t bit = 0; bit < 8 * whole.size(); bit += 5) {
+    const std::size_t step = testing::thorough() ? 5 : 23;  // meets every place of a bit in a byte
+    for (std::size_t bit = 0; bit < 8 * whole.size(); bit += step) {
       std::string flipped = whole;
       flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << (bit % 8)));
       for (const bag::ReadMode mode : {bag::ReadMode::strict, bag::ReadMode::recover}) {

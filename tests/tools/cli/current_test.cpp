@@ -63,6 +63,10 @@ TEST_F(CurrentOfALog, IsFoundToldAndTakenOffWhereverTheModelGoes) {
   EXPECT_TRUE(json("ground/model.json")["alignment"].is_null() ||
               json("ground/model.json")["alignment"]["current"].is_null());
   EXPECT_GT(r2("out", 0), r2("ground", 0) + 0.02);
+  // A heading among the inputs leaves them with the current.
+  learn("--inputs u,v,r,n,m,psi --targets udot,vdot,rdot", "named");
+  EXPECT_EQ(json("named/model.json")["inputs"], json("out/model.json")["inputs"]);
+  EXPECT_EQ(r2("named", 0), r2("out", 0));
 
   // Predictions are over ground, and rows are those of the log.
   const Outcome predicted = testing::succeeded(run("predict log.csv --model out/model.json"));
@@ -97,13 +101,6 @@ TEST_F(CurrentOfALog, GoesWithoutAnAlignmentOfCommands) {
   learn("--align none", "out");
   EXPECT_FALSE(json("out/model.json")["alignment"]["current"].is_null());
   testing::succeeded(run("predict log.csv --model out/model.json"));
-}
-
-TEST_F(CurrentOfALog, AHeadingAmongTheInputsLeavesThemWithTheCurrent) {
-  learn("--inputs u,v,r,n,m,psi --targets udot,vdot,rdot", "named");
-  learn("", "out");
-  EXPECT_EQ(json("named/model.json")["inputs"], json("out/model.json")["inputs"]);
-  EXPECT_EQ(r2("named", 0), r2("out", 0));
 }
 
 TEST_F(CurrentOfALog, StillWaterIsLearnedAsBefore) {

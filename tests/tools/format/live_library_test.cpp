@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "file/shared_file.hpp"
+#include "file/mapped_file.hpp"
 #include "format/compiled_model.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"

@@ -98,10 +98,10 @@ class MpiStudy : public Mpi {
     return kMpirun + "-n " + std::to_string(ranks) + " " KELPIE_COMMAND " study fleet.toml " +
            options + "; echo exit $?\n";
   }
-  // Starts a study of two ranks with runs of a third of a second, sends a signal to one of them
+  // Starts a study of two ranks with runs of a sixth of a second, sends a signal to one of them
   // when two of eight results are there (journals have a first line each), and waits for the end.
   std::string signalled(const std::string& signal, const std::string& which) const {
-    testing::write_little_study(folder_.path(), 20'000);
+    testing::write_little_study(folder_.path(), 10'000);
     return shell(folder_,
                  "(" + study_by(2, "--out a") + ") >said 2>&1 & running=$!\n" +
                      "until [ $(cat a/journal*.jsonl 2>/dev/null | wc -l) -gt 3 ]; do sleep 0.02; "

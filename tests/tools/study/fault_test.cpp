@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outlier node judged on faults put into the targets of training rows: the rows it is judged on
 // are clean. The learner alone. Prints what it measures. Of the real log it takes the first 3,000
-// rows, of the simulated drive 3,000 s; KELPIE_WHOLE_LOG=1 takes all rows, and 5,000 s, for the
+// rows, of the simulated drive 3,000 s; KELPIE_THOROUGH=1 takes all rows, and 5,000 s, for the
 // tables of docs/measured/reproduction.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <span>
@@ -34,10 +33,6 @@ namespace kelpie::fault_test {
 namespace {
 
 constexpr double kShare = 0.02;
-
-bool wants_the_whole_log() {
-  return std::getenv("KELPIE_WHOLE_LOG") != nullptr;  // NOLINT: no thread writes it
-}
 
 constexpr std::size_t kGrace = 200;  // samples within which a spike should be out of the buffer
 
@@ -166,7 +161,7 @@ TEST(Faults, LeaveTheBufferAndDoLittleHarmInSimulation) {
   vehicle::Scenario scenario =
       vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
   scenario.phases.resize(1);
-  scenario.phases.front().duration_s = wants_the_whole_log() ? 5000.0 : 3000.0;
+  scenario.phases.front().duration_s = testing::thorough() ? 5000.0 : 3000.0;
   const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
   expect_robust(log::make_dataset(table, log::guess_roles(table, {})));
 }
@@ -177,7 +172,7 @@ TEST(Faults, LeaveTheBufferAndDoLittleHarmOnTheRealLog) {
     GTEST_SKIP() << "the log of AUV Dagon is not here";
   }
   log::Table table = log::read_csv(file);
-  if (!wants_the_whole_log()) {
+  if (!testing::thorough()) {
     for (auto& column : table.columns) {
       column.resize(3000);
     }

@@ -5,16 +5,10 @@
 
 #include <cmath>
 
-#include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/model/trained_model.hpp"
 #include "log/dataset.hpp"
-#include "study/split.hpp"
-#include "support.hpp"
 
 namespace kelpie::open_loop_study_test {
 namespace {
-
-using testing::data_file;
 
 // ν' = command − ½ν for u and v, the yaw rate as commanded; exact at 4 Hz.
 log::Dataset exact_log(std::size_t rows) {
@@ -149,33 +143,6 @@ TEST(OpenLoopStudy, DeadReckoningAgainstACircleDrivenTooSlow) {
   const study::OpenLoopScore score = study::score_open_loop("slow", slow, data, stretches, study);
   const double chord = 2.0 * 5.0 * std::sin(0.5);
   EXPECT_NEAR(score.reckoning[0].median, 0.2 * chord / 5.0, 0.01);
-}
-
-TEST(OpenLoopStudy, OnTheRealLogBeatsTheLearnedModelAloneAndHoldingTheVelocity) {
-  const std::filesystem::path log = data_file("dagon_config1.csv");
-  if (log.empty()) {
-    GTEST_SKIP() << "dagon_config1.csv is not there (KELPIE_DATA_DIR)";
-  }
-  const log::Table table = log::read_csv(log);
-  const log::Dataset data = log::make_dataset(table, log::guess_roles(table, {.rate_hz = 4.0}));
-  const study::Split split = study::make_split(data, {.kind = study::SplitKind::blocks});
-  DynamicsModel learner(data.input_names, data.target_names,
-                        ModelSettings::from_preset("default", 3));
-  for (const std::size_t row : split.training) {
-    learner.update(data.input(row), data.target(row), data.times_s[row]);
-  }
-  const OpenLoop loop = open_loop(learner.trained());
-  study::OpenLoopStudy study;
-  study.horizons_s = {10.0};
-  study.start_every_s = 2.0;
-  const auto stretches = study::unbroken_stretches(data, split.held_out, loop.states);
-  const study::OpenLoopScore score = study::score_open_loop("kelpie", loop, data, stretches, study);
-  EXPECT_GT(score.horizons[0].r2[0], 0.95);
-  EXPECT_GT(score.horizons[0].r2[1], 0.89);
-  EXPECT_GT(score.horizons[0].r2[2], 0.94);
-  const study::OpenLoopScore held =
-      study::score_open_loop("held", study::hold_velocity(loop), data, stretches, study);
-  EXPECT_LT(held.horizons[0].r2[0], 0.0);
 }
 
 }  // namespace

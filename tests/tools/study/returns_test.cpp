@@ -20,6 +20,7 @@
 #include "study/metrics.hpp"
 #include "study/simulated_log.hpp"
 #include "study/split.hpp"
+#include "support.hpp"
 #include "vehicle/scenario_file.hpp"
 
 namespace kelpie::returns_test {
@@ -144,10 +145,12 @@ TEST(Returns, AKnownVehicleIsKnownAgainInFiftySamples) {
 // Bio-fouling comes on slowly.
 TEST(Returns, GradualDriftRecallsNothing) {
   vehicle::Scenario scenario = vehicle::read_scenario(scenario_file("biofouling.toml"));
-  scenario.phases.back().duration_s = scenario.phases.back().ramp_s;  // until the growth ends
+  const double growth_s = scenario.phases.back().ramp_s;
+  scenario.phases.back().duration_s = growth_s;
   const log::Dataset data = simulated(scenario);
   DynamicsModel model(data.input_names, data.target_names, learner_alone(3));
-  for (std::size_t row = 0; row < data.rows(); ++row) {
+  const double end_s = data.times_s.back() - (testing::thorough() ? 0.0 : 0.5 * growth_s);
+  for (std::size_t row = 0; row < data.rows() && data.times_s[row] <= end_s; ++row) {
     model.update(data.input(row), data.target(row), data.times_s[row]);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -16,12 +16,12 @@ namespace {
 const Eigen::Vector3d kMaxSpeeds(12.5, 12.5, 10.9);
 
 std::vector<Eigen::Vector3d> commands(const vehicle::ExcitationSettings& settings,
-                                      std::uint64_t seed, double duration_s,
-                                      double amplitude = 1.0) {
+                                      std::uint64_t seed, double duration_s, double amplitude = 1.0,
+                                      double step_s = 0.1) {
   vehicle::Excitation excitation(settings, kMaxSpeeds, seed);
-  std::vector<Eigen::Vector3d> rows(static_cast<std::size_t>(std::lround(duration_s / 0.1)));
+  std::vector<Eigen::Vector3d> rows(static_cast<std::size_t>(std::lround(duration_s / step_s)));
   for (Eigen::Vector3d& row : rows) {
-    row = excitation.advance(0.1, amplitude);
+    row = excitation.advance(step_s, amplitude);
   }
   return rows;
 }
@@ -90,10 +90,12 @@ TEST(Excitation, AmplitudeScalesTheSameCommands) {
 }
 
 TEST(Excitation, ThrustersAreIndependentOrCorrelatedAsAsked) {
-  const auto independent = commands({}, 5, 100000.0);
+  constexpr double kStep = 1.0;  // a twentieth of the shortest period
+  const auto independent = commands({}, 5, 100000.0, 1.0, kStep);
   EXPECT_NEAR(correlation(independent, 0, 1), 0.0, 0.05);
   EXPECT_NEAR(correlation(independent, 0, 2), 0.0, 0.05);
-  const auto correlated = commands({.mode = vehicle::ExcitationMode::correlated}, 5, 100000.0);
+  const auto correlated =
+      commands({.mode = vehicle::ExcitationMode::correlated}, 5, 100000.0, 1.0, kStep);
   EXPECT_NEAR(correlation(correlated, 0, 1), 0.78, 0.03);
   EXPECT_NEAR(correlation(correlated, 0, 2), 0.0, 0.05);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "file/shared_file.hpp"
+#include "file/mapped_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -9,7 +9,7 @@
 
 #include "support.hpp"
 
-namespace kelpie::shared_file_test {
+namespace kelpie::mapped_file_test {
 namespace {
 
 TEST(SharedFile, AFileWithHolesHasItsRoomBeforeItIsRenewed) {
@@ -29,4 +29,4 @@ TEST(SharedFile, AFileWithHolesHasItsRoomBeforeItIsRenewed) {
 }
 
 }  // namespace
-}  // namespace kelpie::shared_file_test
+}  // namespace kelpie::mapped_file_test

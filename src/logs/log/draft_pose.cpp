@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/draft_pose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace kelpie::log {
+namespace {
+
+// The parts of a pose that one topic, or a table, has by name.
+PoseColumns pose_of(const bag::TopicReport& topic) {
+  constexpr std::array<std::string_view, 14> kOther{
+      "cmd",   "command", "desired",  "ref",   "target", "setpoint", "rate",
+      "speed", "vel",     "velocity", "accel", "true",   "error",    "covariance"};
+  PoseColumns parts;
+  const auto is_plain = [](const std::string& name) {
+    return can_be_written(name) && name.find_first_of("\"\\") == std::string::npos;
+  };
+  for (const bag::FieldRange& field : topic.fields) {
+    const std::vector<std::string> words = words_of(field.path);
+    const bool is_other = std::ranges::any_of(words, [&](const std::string& word) {
+      return std::ranges::find(kOther, word) != kOther.end();
+    });
+    const std::optional<std::string> part = is_other || field.finite == 0 ||
+                                                    !field.elements.empty() ||
+                                                    !is_plain(field.path) || !is_plain(topic.name)
+                                                ? std::nullopt
+                                                : pose_part_by_name(field.path);
+    if (part) {
+      parts.try_emplace(
+          *part,
+          CandidateColumn{.name = topic.name.empty() ? field.path : topic.name + ":" + field.path,
+                          .topic = topic.name,
+                          .unit = field.unit,
+                          .low = field.low,
+                          .high = field.high,
+                          .rate_hz = topic.rate_hz * static_cast<double>(field.finite) /
+                                     static_cast<double>(std::max<std::size_t>(topic.messages, 1)),
+                          .stamps = topic.clock_offset});
+    }
+  }
+  const bool is_quaternion =
+      parts.contains("qw") && parts.contains("qx") && parts.contains("qy") && parts.contains("qz");
+  std::erase_if(parts, [&](const auto& part) {
+    const bool is_angle = part.first.size() > 1 && part.first[0] != 'q';
+    return is_quaternion ? is_angle : part.first[0] == 'q';
+  });
+  const bool has_plane =
+      parts.contains("x") && parts.contains("y") && (is_quaternion || parts.contains("yaw"));
+  if (!has_plane) {
+    parts.erase("x");
+    parts.erase("y");
+  }
+  const bool moves = std::ranges::any_of(parts, [](const auto& part) {
+    return part.second.varies() && part.first != "roll" && part.first != "pitch";
+  });
+  return moves ? parts : PoseColumns{};
+}
+
+}  // namespace
+
+PoseChoice choose_pose(const bag::BagReport& report) {
+  PoseChoice choice;
+  for (const bag::TopicReport& topic : report.topics) {
+    PoseColumns parts = pose_of(topic);
+    if (parts.size() > choice.parts.size()) {
+      choice = {std::move(parts), {topic.name}};
+    } else if (!parts.empty() && parts.size() == choice.parts.size()) {
+      choice.rivals.push_back(topic.name);
+    }
+  }
+  return choice;
+}
+
+}  // namespace kelpie::log
