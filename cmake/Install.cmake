@@ -11,7 +11,7 @@ set(generated_dir "${PROJECT_BINARY_DIR}/install")
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/kelpieConfig.cmake.in"
   "${generated_dir}/kelpieConfig.cmake" INSTALL_DESTINATION "${package_dir}")
 write_basic_package_version_file("${generated_dir}/kelpieConfigVersion.cmake"
-  COMPATIBILITY SameMinorVersion)
+  COMPATIBILITY SameMajorVersion)
 install(FILES "${generated_dir}/kelpieConfig.cmake" "${generated_dir}/kelpieConfigVersion.cmake"
         DESTINATION "${package_dir}" COMPONENT development)
 install(EXPORT kelpie NAMESPACE kelpie:: FILE kelpieLibrary.cmake
