@@ -2,6 +2,7 @@
 // What a model does with numbers that are none, spans of another size, and two threads at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
