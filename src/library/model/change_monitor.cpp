@@ -154,8 +154,7 @@ void ChangeMonitor::learn(std::span<const double> y) {
   for (std::size_t a = 0; errors_known() && a < axes(); ++a) {
     find_effects(fit_.theta(a), a);
     for (std::size_t c = 0; c < commands_; ++c) {
-      usual_effect_[c].add(effects_.of_cause[c] - effects_.square[c], effects_.square[c],
-                           weight / (scatter_[a].value() * scatter_[a].value()));
+      usual_effect_[c].add(effects_, c, weight / (scatter_[a].value() * scatter_[a].value()));
     }
   }
   const double root = std::sqrt(weight);
@@ -377,8 +376,7 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
   if (start.evidence < start.peak - kChange.enough) {
     move_to(nullptr);
     usual_ = std::max(usual_, start.peak);
-    changed_start_ = kMostStarts;
-    std::ranges::for_each(starts_, [](ChangeStart& one) { one.alive = false; });
+    end_all_starts();
     return Event::withdrawn;
   }
   if (t - believed_s_ > kChange.probation_s) {
@@ -410,16 +408,19 @@ ChangeMonitor::Event ChangeMonitor::settle() {
     fit_.limit_rows(std::llround(static_cast<double>(fit_.rows()) * kKept / samples_));
     samples_ = kKept;
   }
+  end_all_starts();
+  return Event::none;
+}
+
+void ChangeMonitor::end_all_starts() {
   changed_start_ = kMostStarts;
   std::ranges::for_each(starts_, [](ChangeStart& one) { one.alive = false; });
-  return Event::none;
 }
 
 void ChangeMonitor::restart() {
   fit_.clear();
   std::ranges::for_each(scatter_, &RobustScale::clear);
-  std::ranges::for_each(starts_, [](ChangeStart& one) { one.alive = false; });
-  changed_start_ = kMostStarts;
+  end_all_starts();
   believed_s_ = row_s_;
   samples_ = 0.0;
 }

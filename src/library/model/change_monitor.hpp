@@ -105,6 +105,7 @@ class ChangeMonitor {
   void learn(std::span<const double> y);
   void begin_start(double t);
   void end_old_starts(double t);
+  void end_all_starts();
   void find_effects(std::span<const double> theta, std::size_t axis);
   bool errors_known() const;
   void expect_usual_errors(ChangeStart& start) const;

@@ -35,7 +35,9 @@ double robust_weight(double error, double variance) {
   return error * error > far ? far / (error * error) : 1.0;
 }
 
-void CommandEffect::add(double linear, double square, double weight) {
+void CommandEffect::add(const CauseEffects& effects, std::size_t command, double weight) {
+  const double square = effects.square[command];
+  const double linear = effects.of_cause[command] - square;
   ll += weight * linear * linear;
   lq += weight * linear * square;
   qq += weight * square * square;
@@ -131,7 +133,7 @@ void ChangeStart::observe(std::size_t axis, const CauseEffects& effects, double 
   const double unchanged = robust_log_density(without, noise);
   observe_lone(axis, effects, y - effects.value, noise, unchanged);
   for (std::size_t c = 0; c < effect.size(); ++c) {
-    effect[c].add(effects.of_cause[c] - effects.square[c], effects.square[c], 1.0 / noise);
+    effect[c].add(effects, c, 1.0 / noise);
   }
   likelihood += (robust_log_density(error, noise + unknown) - unchanged) / tau[axis];
   const double gained = log_density(error, noise + unknown) - log_density(without, noise);

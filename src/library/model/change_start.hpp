@@ -16,6 +16,13 @@ struct LoneCause {
   double likelihood = 0.0;  ///< over no change [nats]
 };
 
+/// The value of one axis at one row, and the effect of every cause on this value.
+struct CauseEffects {
+  double value = 0.0;            ///< Θ₀ᵀφ
+  std::vector<double> of_cause;  ///< ∂value/∂s: of each cause, then the drag, then the inertia
+  std::vector<double> square;    ///< of each command: the part in higher powers of the command
+};
+
 /// The effect of a command on rows, as sums over rows and axes: of the command's terms in the first
 /// power of the command L, and in the second (and higher) Q.
 struct CommandEffect {
@@ -23,19 +30,13 @@ struct CommandEffect {
   double lq = 0.0;
   double qq = 0.0;
 
-  void add(double linear, double square, double weight);
+  /// Adds a row of one axis with this weight.
+  void add(const CauseEffects& effects, std::size_t command, double weight);
 
   /// The factor g of the command with (g - 1) L + (g² - 1) Q ≈ size (L + Q).
   double gain(double size) const;
 
   void visit(Archive& archive);  ///< core/archive.hpp
-};
-
-/// The value of one axis at one row, and the effect of every cause on this value.
-struct CauseEffects {
-  double value = 0.0;            ///< Θ₀ᵀφ
-  std::vector<double> of_cause;  ///< ∂value/∂s: of each cause, then the drag, then the inertia
-  std::vector<double> square;    ///< of each command: the part in higher powers of the command
 };
 
 /// A start of the ChangeMonitor: the hypothesis that the vehicle has changed at one moment, with
@@ -60,7 +61,7 @@ struct ChangeStart {
   void observe(std::size_t axis, const CauseEffects& effects, double y, double without,
                double spread);
 
-  /// The sizes by all hypotheses of this start, weighted by their likelihood.
+  /// The mean of the sizes over all hypotheses of this start, weighted by likelihood.
   void mix_sizes(std::span<double> sizes) const;
 
   void visit(Archive& archive);  ///< core/archive.hpp
