@@ -23,8 +23,7 @@ struct Plant {
 };
 
 /// The mass matrix about the origin of a rigid body that is given about its centre of gravity.
-Matrix6 rigid_body_mass(double mass, const Eigen::Vector3d& centre,
-                        const Eigen::Matrix3d& inertia);
+Matrix6 rigid_body_mass(double mass, const Eigen::Vector3d& centre, const Eigen::Matrix3d& inertia);
 
 /// Ensures: the mass matrix is symmetric if the added masses are. A payload of negative mass may
 /// make the matrix indefinite, see is_positive_definite().

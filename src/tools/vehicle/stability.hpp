@@ -21,7 +21,7 @@ enum class EngineTerm : std::uint8_t {
   restoring
 };
 
-const char* term_text(EngineTerm term);    ///< "added mass", …
+const char* term_text(EngineTerm term);   ///< "added mass", …
 const char* axis_text(std::size_t axis);  ///< "surge" to "yaw"
 
 /// The fastest growing disturbance of a vehicle in an engine.
