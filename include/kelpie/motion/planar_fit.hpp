@@ -137,6 +137,9 @@ struct PlanarPlace {
   }
 };
 
+/// Names of the parameters of a vehicle with these thrusters, in the order of PlanarPlace.
+std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters);
+
 /// Parameters of Fossen's equation in the plane, estimated from a log.
 struct PlanarFit : ParameterFit {
   Matrix free_terms;  ///< coefficients of the terms without the structure: terms × axes

@@ -96,11 +96,9 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 
 void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
   detector_.dismiss();  // errors until now are of the vehicle before
-  if (step.empty()) {
-    memory_.settle();
-  } else if (news.changed) {
+  if (!step.empty() && news.changed) {
     memory_.promote_challenger(news.changed_since);
-  } else if (news.withdrawn) {
+  } else if (!step.empty() && news.withdrawn) {
     memory_.withdraw();
   } else {
     memory_.settle();

@@ -80,7 +80,7 @@ void SparseRegression::shift(std::span<const double> step) {
 
 void SparseRegression::doubt_terms(double samples) {
   const double rows = samples * correlation_.rows_per_sample();
-  const double known = static_cast<double>(fit_.rows());
+  const auto known = static_cast<double>(fit_.rows());
   if (known > rows) {
     std::ranges::fill(features_, 1.0);
     std::ranges::fill(std::span(features_).first(first_centre()), std::sqrt(rows / known));

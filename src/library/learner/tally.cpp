@@ -96,9 +96,9 @@ void Tally::subtract(const Tally& earlier) {
 }
 
 void Tally::visit(Archive& archive) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 53;
+  constexpr std::int64_t kMostCount = std::int64_t{1} << 53;
   for (const TallyField& field : kTotals) {
-    archive.whole(this->*field.total, 0, kMost);
+    archive.whole(this->*field.total, 0, kMostCount);
   }
 }
 

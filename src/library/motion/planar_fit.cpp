@@ -27,16 +27,6 @@ constexpr std::array<const char*, PlanarPlace::thrusters> kVehicleNames{
 constexpr std::array<const char*, PlanarPlace::per_thruster> kThrusterNames{"forward", "reverse",
                                                                             "angle", "arm"};
 
-std::vector<std::string> names_of(const std::vector<std::string>& thrusters) {
-  std::vector<std::string> names(kVehicleNames.begin(), kVehicleNames.end());
-  for (const std::string& thruster : thrusters) {
-    for (const char* const name : kThrusterNames) {
-      names.push_back(thruster + "." + name);
-    }
-  }
-  return names;
-}
-
 bool is_angle(std::size_t place) {
   return place >= PlanarPlace::thrusters &&
          (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster == 2;
@@ -177,7 +167,7 @@ PlanarFit collected(const std::vector<std::string>& thrusters, const WeakRows& w
   fit.windows = static_cast<std::size_t>(weak.terms.rows());
   fit.window_s = 2.0 * kIdentification.half_window_s;
   fit.misfit = misfit;
-  const std::vector<std::string> names = names_of(thrusters);
+  const std::vector<std::string> names = planar_parameter_names(thrusters);
   fit.covariance = Matrix(names.size(), names.size());
   auto covariance = as_matrix(fit.covariance);
   covariance(best.free, best.free) = misfit * errors;
@@ -245,6 +235,16 @@ void require_windows(const WeakRows& weak) {
 }
 
 }  // namespace
+
+std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters) {
+  std::vector<std::string> names(kVehicleNames.begin(), kVehicleNames.end());
+  for (const std::string& thruster : thrusters) {
+    for (const char* const name : kThrusterNames) {
+      names.push_back(thruster + "." + name);
+    }
+  }
+  return names;
+}
 
 PlanarFit fit_planar(const PlanarRows& rows) {
   const WeakRows weak = weak_rows(rows, {});

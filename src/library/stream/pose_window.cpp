@@ -81,9 +81,9 @@ PoseWindow::PoseWindow(const StreamPlan& plan, std::size_t most)
 // The weights of the increments p(i+1) − p(i) at the middle of their times: a constant velocity has
 // the mean itself and the slope 0, a steady acceleration the slope itself, for any spacing.
 std::optional<PoseWindow::Increments> PoseWindow::weigh(const SignalHistory& signal) {
-  constexpr double kRounding = stream::kTuning.window_rounding_s;
-  const std::size_t after = signal.first_after(t_ - pose_.half_s + kRounding);
-  const std::size_t end = signal.first_after(t_ + pose_.half_s - kRounding);
+  const double half_s = pose_.half_s - stream::kTuning.window_rounding_s;
+  const std::size_t after = signal.first_after(t_ - half_s);
+  const std::size_t end = signal.first_after(t_ + half_s);
   if (after == 0 || end == signal.size() || end - after + 1 < stream::kTuning.pose_increments) {
     return std::nullopt;
   }

@@ -40,6 +40,7 @@ namespace {
 constexpr const char* kDemoPage = "8080";
 constexpr const char* kDemoFolder = "out/demo";
 constexpr const char* kVehicleFile = "vehicle.toml";  // what a vehicle told
+constexpr const char* kAllParameters = "all";
 constexpr double kShortestDemoS = 20.0;
 constexpr double kLongestDemoS = 86'400.0;
 
@@ -56,8 +57,11 @@ struct LiveArguments {
   std::string block;
   std::string plotjuggler;
   std::string page;
-  std::string mavlink;  // connection of a vehicle that tells what its messages mean
-  std::string told{};   // by the vehicle: a configuration
+  std::vector<std::string> tell;  // parameters; empty: as the file says
+  std::vector<std::string> thrust;
+  double percent = 0.0;  // 0: the file's
+  std::string mavlink;   // connection of a vehicle that tells what its messages mean
+  std::string told{};    // by the vehicle: a configuration
   bool fresh = false;
   bool freeze = false;
   bool resume = false;
@@ -104,6 +108,19 @@ live::Configuration read_configuration(const LiveArguments& options) {
   return configuration;
 }
 
+void add_parameters(const LiveArguments& options,
+                    std::optional<live::ParameterSettings>& parameters) {
+  if (options.tell.empty()) {
+    return;
+  }
+  live::ParameterSettings& settings = parameters ? *parameters : parameters.emplace();
+  settings.tell = options.tell == std::vector<std::string>{kAllParameters}
+                      ? std::vector<std::string>{}
+                      : options.tell;
+  settings.thrust = options.thrust.empty() ? settings.thrust : known_thrusts(options.thrust);
+  settings.percent = options.percent > 0.0 ? options.percent : settings.percent;
+}
+
 // The file's, with the options over it.
 live::Configuration configuration_of(const LiveArguments& options) {
   live::Configuration configuration = read_configuration(options);
@@ -125,6 +142,7 @@ live::Configuration configuration_of(const LiveArguments& options) {
     live::parse_endpoint(options.page, "--page");
     settings.page = options.page;
   }
+  add_parameters(options, settings.parameters);
   return configuration;
 }
 
@@ -353,6 +371,19 @@ CLI::Option* add_demo(CLI::App& command, LiveArguments& options) {
   return demo;
 }
 
+void add_parameter_options(CLI::App& command, LiveArguments& options) {
+  CLI::Option* const tell =
+      add_list(&command, "--tell", options.tell,
+               "parameters to identify while the vehicle drives, as of `kelpie plan`, or all; over "
+               "live.parameters");
+  add_list(&command, "--thrust", options.thrust,
+           "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)")
+      ->needs(tell);
+  command.add_option("--percent", options.percent, "wanted half width of the 90 % intervals: 5")
+      ->check(within(0.1, 100.0))
+      ->needs(tell);
+}
+
 void add_outputs(CLI::App* command, LiveArguments& options) {
   add_folder(command, "--record", options.record,
              "folder for a recording of all that comes (MCAP), over live.record");
@@ -418,6 +449,7 @@ void add_live(CLI::App& app) {
   command
       ->add_flag("--resume", options->resume, "learn again, where learning was frozen (as SIGUSR2)")
       ->excludes(freeze);
+  add_parameter_options(*command, *options);
   add_outputs(command, *options);
   command->add_flag("--check", options->check,
                     "say what the configuration makes of the messages, and don't start");

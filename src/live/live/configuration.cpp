@@ -25,13 +25,20 @@
 namespace kelpie::live {
 namespace {
 
-double seconds_between(const file::TomlNode& value) {
-  const double seconds = value.number("a number of s");
-  if (seconds < kTuning.least_pause_s || seconds > kTuning.longest_pause_s) {
-    value.refuse(fmt::format("is out of range; it has to be from {} to {} s", kTuning.least_pause_s,
-                             kTuning.longest_pause_s));
+constexpr double kLeastThrust = 1e-12;  // N per square of a unit, such as µs
+constexpr double kMostThrust = 1e9;
+
+double number_between(const file::TomlNode& value, double least, double most,
+                      const std::string& unit) {
+  const double number = value.number("a number of " + unit);
+  if (!(least <= number && number <= most)) {
+    value.refuse(fmt::format("is out of range; it has to be from {} to {} {}", least, most, unit));
   }
-  return seconds;
+  return number;
+}
+
+double seconds_between(const file::TomlNode& value) {
+  return number_between(value, kTuning.least_pause_s, kTuning.longest_pause_s, "s");
 }
 
 std::string alignment_wish(const file::TomlNode& value) {
@@ -90,9 +97,30 @@ void read_validity(const file::TomlNode& table, std::map<std::string, double>& v
   }
 }
 
+ParameterSettings read_parameters(const file::TomlNode& table) {
+  table.table({"tell", "percent", "thrusters", "thrust"});
+  ParameterSettings settings;
+  if (table.has("tell")) {
+    settings.tell = file::texts_of(table["tell"], "a list of parameters");
+  }
+  if (table.has("thrusters")) {
+    settings.thrusters = file::texts_of(table["thrusters"], "a list of inputs");
+  }
+  if (table.has("percent")) {
+    settings.percent = number_between(table["percent"], 0.1, 100.0, "%");
+  }
+  if (table.has("thrust")) {
+    for (const file::TomlNode& value : table["thrust"].members("a table, as in {th1 = 0.0262}")) {
+      settings.thrust.emplace_back(value.key(),
+                                   number_between(value, kLeastThrust, kMostThrust, "N"));
+    }
+  }
+  return settings;
+}
+
 LiveSettings read_live(const file::TomlNode& live) {
   live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "page", "token",
-              "status", "nominal", "block", "dds", "mavlink", "valid"});
+              "status", "nominal", "block", "dds", "mavlink", "valid", "parameters"});
   LiveSettings settings;
   const auto text = [&](const char* key, std::string& value) {
     if (live.has(key)) {
@@ -130,6 +158,9 @@ LiveSettings read_live(const file::TomlNode& live) {
   }
   if (live.has("valid")) {
     read_validity(live["valid"], settings.valid);
+  }
+  if (live.has("parameters")) {
+    settings.parameters = read_parameters(live["parameters"]);
   }
   text("token", settings.token);
   if (live.has("token") && !is_good_token(settings.token)) {

@@ -33,6 +33,16 @@ Endpoint parse_endpoint(const std::string& text, const std::string& field);
 /// Treatment of rows with a stuck velocity: constant for longer than `log.gap`.
 enum class Frozen : std::uint8_t { skip, learn };
 
+/// The table [live.parameters]: what to tell of the vehicle's parameters while it drives, as by
+/// `kelpie plan`.
+struct ParameterSettings {
+  std::vector<std::string> tell{};       ///< study::wanted_places()
+  double percent = 5.0;                  ///< wanted half width of the 90 % intervals
+  std::vector<std::string> thrusters{};  ///< inputs that are thrusters; empty: by their names
+  std::vector<std::pair<std::string, double>>
+      thrust{};  ///< N per square of the unit; empty: ratios
+};
+
 /// The table [live] of a configuration file (docs/howto/live.md).
 struct LiveSettings {
   std::string out = "out/live";  ///< folder of checkpoint and model
@@ -48,8 +58,9 @@ struct LiveSettings {
   double status_s = 60.0;        ///< between two status lines [s]
   /// Columns that tell whether their topic's velocities are valid: at this value and above.
   std::map<std::string, double> valid{};
-  std::optional<file::TomlNode> dds{};      ///< [live.dds], read by the room `ros`
-  std::optional<file::TomlNode> mavlink{};  ///< [live.mavlink], read by `autopilot`
+  std::optional<ParameterSettings> parameters{};  ///< none: parameters are not identified
+  std::optional<file::TomlNode> dds{};            ///< [live.dds], read by the room `ros`
+  std::optional<file::TomlNode> mavlink{};        ///< [live.mavlink], read by `autopilot`
 };
 
 /// Names and values.

@@ -63,6 +63,13 @@ struct ThrusterHealth {
   double upper = 1.0;
 };
 
+/// A parameter of the vehicle in the plane, as `kelpie identify` names it.
+struct ParameterHealth {
+  std::string name;
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not told so far
+  double interval = value;  ///< half width of the 90 % interval over the size of the parameter
+};
+
 /// Estimate of a velocity, measured or reckoned.
 struct VelocityHealth {
   std::string name;
@@ -99,6 +106,8 @@ struct LearnerHealth {
   std::string vehicle{};  ///< the last finding about the vehicle, in words; empty: none
   std::string doubt{};    ///< why the model is doubtful (RowCheck), in words; empty: no reason
   std::vector<ThrusterHealth> thrusters{};
+  std::vector<ParameterHealth> parameters{};  ///< that are to be told
+  std::string countdown{};  ///< how many of these are known, and which is known least; empty: none
   std::string authority{};  ///< what is left of it, in words; empty: all, or unknown
   double held_current = std::numeric_limits<double>::quiet_NaN();  ///< Authority::held_current()
   std::shared_ptr<const Effectiveness> effectiveness{};            ///< null: unknown

@@ -57,6 +57,8 @@ constexpr auto reckoning = number_at<Health, &Health::reckoning, kMember>;
 template <auto kMember>
 constexpr auto of_velocity = number_at<VelocityHealth, kMember>;
 template <auto kMember>
+constexpr auto of_parameter = number_at<ParameterHealth, kMember>;
+template <auto kMember>
 constexpr auto faults = number_at<SourceHealth, &SourceHealth::faults, kMember>;
 
 double is_ready(const Health& health) {
@@ -181,6 +183,9 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
      text_at<Health, &Health::learner, &LearnerHealth::vehicle>, alert(present, warn)},
     {"thrusters_watched", "thrusters_watched", "thrusters watched", "", count, vehicle,
      "thrusters whose share of thrust is known", thrusters_watched},
+    {"countdown", "", "parameters known", "", text, vehicle,
+     "how many parameters are known as well as was asked, and the one known least",
+     text_at<Health, &Health::learner, &LearnerHealth::countdown>},
     {"authority", "authority_lost", "authority left", "", text, vehicle,
      "what the thrusters can still do, where that is less than before",
      text_at<Health, &Health::learner, &LearnerHealth::authority>, alert(present, warn)},
@@ -307,6 +312,15 @@ constexpr std::array kVelocity = std::to_array<HealthField<VelocityHealth>>({
      "standard deviation of the velocity", of_velocity<&VelocityHealth::deviation>},
 });
 
+constexpr std::array kParameter = std::to_array<HealthField<ParameterHealth>>({
+    {"value", "parameter_value", "value", "", gauge, vehicle,
+     "estimate of a parameter, in the SI with a thrust known, else over the surge inertia",
+     of_parameter<&ParameterHealth::value>},
+    {"interval", "parameter_interval_ratio", "± of the value", "", share, vehicle,
+     "half width of the parameter's 90 % interval over the parameter's size",
+     of_parameter<&ParameterHealth::interval>},
+});
+
 }  // namespace tables
 
 }  // namespace
@@ -334,6 +348,10 @@ std::span<const HealthField<ThrusterHealth>> health_fields() {
 template <>
 std::span<const HealthField<VelocityHealth>> health_fields() {
   return tables::kVelocity;
+}
+template <>
+std::span<const HealthField<ParameterHealth>> health_fields() {
+  return tables::kParameter;
 }
 
 namespace {

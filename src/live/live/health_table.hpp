@@ -95,7 +95,7 @@ struct HealthField {
 };
 
 /// Fields of `Of`: Health (the whole run), AxisHealth, SourceHealth, TopicHealth, ThrusterHealth,
-/// VelocityHealth.
+/// VelocityHealth, ParameterHealth.
 template <typename Of>
 std::span<const HealthField<Of>> health_fields();
 template <>
@@ -110,9 +110,11 @@ template <>
 std::span<const HealthField<ThrusterHealth>> health_fields();
 template <>
 std::span<const HealthField<VelocityHealth>> health_fields();
+template <>
+std::span<const HealthField<ParameterHealth>> health_fields();
 
 /// Calls `visit(list, name)` for each list of a health: axes, signals, topics, thrusters,
-/// velocities.
+/// velocities, parameters.
 template <typename Visit>
 void visit_health_lists(const Health& health, Visit visit) {
   visit(health.learner.axes, "axis");
@@ -120,6 +122,7 @@ void visit_health_lists(const Health& health, Visit visit) {
   visit(health.topics, "topic");
   visit(health.learner.thrusters, "thruster");
   visit(health.reckoning.velocities, "velocity");
+  visit(health.learner.parameters, "parameter");
 }
 
 /// Something that is wrong now.

@@ -19,6 +19,16 @@
 #include "study/alignment.hpp"
 
 namespace kelpie::live {
+namespace {
+
+std::optional<ParameterCountdown> countdown_of(const Configuration& configuration) {
+  return configuration.live.parameters
+             ? std::optional<ParameterCountdown>(std::in_place, configuration,
+                                                 *configuration.live.parameters)
+             : std::nullopt;
+}
+
+}  // namespace
 
 LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::path folder,
                          const std::optional<log::Reach>& recording, std::optional<SavedRun> saved,
@@ -38,6 +48,7 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       check_(configuration.plan, configuration.settings.shared.states),
       changes_(configuration.plan, model_->model().ready()),
       authority_(configuration.plan),
+      parameters_(countdown_of(configuration)),
       score_(configuration.plan),
       predictions_(configuration.plan.targets.size()),
       decisions_(configuration.plan.targets.size()),
@@ -180,6 +191,7 @@ void LiveLearner::begin_anew() {
   progress_.learned = 0;
   changes_ = ChangeReporter(configuration_.plan, false);
   authority_ = AuthorityReporter(configuration_.plan);
+  parameters_ = countdown_of(configuration_);
   score_ = PredictionScore(configuration_.plan);
 }
 
@@ -214,6 +226,10 @@ void LiveLearner::update(std::span<const double> x, std::span<const double> y, d
   SharedModel& shared = *model_;
   shared.update(x, y, progress_.clock.at(t));
   authority_.observe(x);
+  if (parameters_) {
+    const bool changed = std::ranges::any_of(shared.model().decisions(), &Decision::changed);
+    parameters_->update(x, t, changed, output_);
+  }
   ++progress_.learned;
   score_.score(x, y, t, shared.model().decisions());
 }
@@ -354,6 +370,9 @@ void LiveLearner::refresh_health() {
   now.doubt = progress_.doubt;
   now.last_t_s = last_t_s_;
   authority_.update(model_->model().diagnosis(), now.alignment, last_t_s_, now, output_);
+  if (parameters_) {
+    parameters_->report(now);
+  }
   refreshed_ = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);
   health_ = std::move(now);

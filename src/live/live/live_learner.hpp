@@ -22,6 +22,7 @@
 #include "live/health.hpp"
 #include "live/live_reckoning.hpp"
 #include "live/output.hpp"
+#include "live/parameter_countdown.hpp"
 #include "live/prediction_score.hpp"
 #include "live/row_check.hpp"
 #include "live/row_queue.hpp"
@@ -102,6 +103,7 @@ class LiveLearner {
   RowCheck check_;
   ChangeReporter changes_;
   AuthorityReporter authority_;
+  std::optional<ParameterCountdown> parameters_;  // where parameters are to be told
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;
   double last_t_s_ = 0.0;

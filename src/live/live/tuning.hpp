@@ -40,6 +40,11 @@ inline constexpr struct Tuning {
   double least_step_s = 0.02;   ///< between two estimates without a measurement
   double least_outage_s = 1.0;  ///< s of silence; shorter silences are usual
 
+  // Parameters (docs/howto/live.md#parameters)
+  double identified_s = 1800.0;            ///< of rows that are identified: 3600 windows
+  double forgotten_s = 300.0;              ///< of rows that go at a time, the oldest
+  double between_identifications_s = 5.0;  ///< a fit of half an hour takes some 0.1 s
+
   // Reports
   double least_pause_s = 0.1;    ///< between checkpoints or reports of status; reference/limits.md
   double longest_pause_s = 1e6;  ///< 12 days

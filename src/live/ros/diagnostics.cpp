@@ -77,6 +77,11 @@ std::vector<DiagnosticStatus> diagnose(const live::Health& now, const live::Heal
         thruster.name + ", share of its thrust",
         fmt::format("{:.2f} ({:.2f} to {:.2f})", thruster.share, thruster.lower, thruster.upper));
   }
+  for (const live::ParameterHealth& parameter : learner.parameters) {
+    all.back().values.emplace_back(
+        parameter.name,
+        fmt::format("{:.4g} (± {:.1f} %)", parameter.value, 100.0 * parameter.interval));
+  }
   for (const live::AxisHealth& axis : learner.axes) {
     add(Group::axis, axis.name, axis.status.ready ? "a model is in service" : "no model yet");
     add_values(all.back(), axis, Group::axis);

@@ -98,7 +98,8 @@ Json plan_json(const live::Configuration& configuration) {
         {"axes", fields_plan<live::AxisHealth>()},
         {"signals", fields_plan<live::SourceHealth>()},
         {"thrusters", fields_plan<live::ThrusterHealth>()},
-        {"velocities", fields_plan<live::VelocityHealth>()}}}};
+        {"velocities", fields_plan<live::VelocityHealth>()},
+        {"parameters", fields_plan<live::ParameterHealth>()}}}};
 }
 
 // Six digits of each: more than a screen has pixels.
@@ -207,6 +208,7 @@ Json health_json(const live::Health& health, const live::Health& before,
   json["topics"] = file::list(health.topics, named_json<live::TopicHealth>);
   json["thrusters"] = file::list(learner.thrusters, named_json<live::ThrusterHealth>);
   json["velocities"] = file::list(health.reckoning.velocities, named_json<live::VelocityHealth>);
+  json["parameters"] = file::list(learner.parameters, named_json<live::ParameterHealth>);
   return json;
 }
 

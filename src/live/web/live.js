@@ -134,7 +134,7 @@ const live = (() => {
     const value = Array.isArray(one[field.key]) ? one[field.key][field.place] : one[field.key];
     if (value === null || value === "") return "–";
     return { count, text: (text) => text, flag: (flag) => flag ? "yes" : "no",
-      share: (share) => `${fixed(100 * share, 0)} %` }[field.kind]?.(value) ?? number(value);
+      share: (share) => `${fixed(100 * share, share < 0.1 ? 1 : 0)} %` }[field.kind]?.(value) ?? number(value);
   }
 
   // A row for each of `list`: name, cells before, a cell per field, cells behind.
@@ -178,7 +178,7 @@ const live = (() => {
       : health.alerts.some(({ key }) => key === "idle_s") ? "⚠ No messages come"
       : health.axes.every((axis) => axis.ready) ? "▶ Learning" : "▶ Learning; too few samples for a model so far",
     `${count(health.learned)} samples learned, ${number(health.t, 6)} s`);
-    const { run, axes, signals, thrusters, velocities } = plan.fields;
+    const { run, axes, signals, thrusters, velocities, parameters } = plan.fields;
     const isGood = ({ key, place }) => (key === "r2" && place < 2) || key === "coverage";
     listed(at("good"), axes.filter(isGood), health.axes);
     listed(at("learners"), axes.filter((field) => !isGood(field)), health.axes);
@@ -190,6 +190,9 @@ const live = (() => {
     table(at("facts"), [], run.map((field) => [field.label, shown(field, health), field.help]), "facts");
     if (health.velocities.length > 0) listed(at("velocities"), velocities, health.velocities);
     if (health.thrusters.length > 0) listed(at("thrusters"), thrusters, health.thrusters);
+    at("known").hidden = health.countdown === "";
+    at("countdown").textContent = health.countdown;
+    listed(at("parameters"), parameters, health.parameters);
   }
 
   // What is said aloud changes seldom; what counts up isn't said.

@@ -46,6 +46,8 @@ was learned stays in the checkpoint before, until the next one is written.</p>
 <p class="buttons"><button type="button" id="no" autofocus>Keep it</button>
 <button type="button" id="yes">Begin anew</button></p></dialog>
 <section aria-label="curves"><div id="curves"></div></section>
+<section id="known" hidden=""><h2>Parameters</h2><p id="countdown"></p>
+<div id="parameters"></div></section>
 <section><h2>What happened</h2><ol id="said" role="log" aria-live="polite"
 aria-label="What happened" tabindex="0"></ol></section>
 <section><h2>Signals</h2><div id="signals"></div></section>
