@@ -154,7 +154,8 @@ struct PlanarFit : ParameterFit {
 ///
 /// 1. Weak form (modulating functions, Shinbrot 1957): the equation times a smooth bump of 5 s,
 ///    integrated, with the derivative moved from the velocity to the bump. No measurement is
-///    differentiated. Windows every half second, each within a stretch.
+///    differentiated. Windows every half second, each within a stretch. Speeds between rows are
+///    ramps or steps, as explains most.
 /// 2. Regression of the accelerations on all terms of the equation, axis by axis, with smaller
 ///    weights for outlying windows (Huber 1964). Noise is assumed in the accelerations only.
 /// 3. M, D, K and the directions of thrust with the least distance to these coefficients in the

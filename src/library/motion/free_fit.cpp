@@ -73,27 +73,44 @@ Eigen::MatrixXd between_blocks(const Eigen::MatrixXd& scores, Eigen::Index block
   return count / (count - 1.0) * (sums.transpose() * sums);
 }
 
-}  // namespace
-
-FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks) {
+// Least squares with Huber's weights, without the covariance of the scores.
+struct Regression {
   FreeFit fit;
-  const Eigen::Index n = rows.terms.rows();
-  const Eigen::Index terms = rows.terms.cols();
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(n);
+  Eigen::VectorXd weights;
   Eigen::MatrixXd residuals;
+};
+
+Regression regress(const WeakRows& rows) {
+  const Eigen::Index n = rows.terms.rows();
+  Regression found{.fit = {}, .weights = Eigen::VectorXd::Ones(n), .residuals = {}};
+  FreeFit& fit = found.fit;
   for (int round = 0; round <= kIdentification.reweighted; ++round) {
     const NormalEquations sums =
-        NormalEquations::of_weighted(rows.terms, rows.acceleration, weights);
+        NormalEquations::of_weighted(rows.terms, rows.acceleration, found.weights);
     fit.gram = sums.gram();
     fit.coefficients = equilibrated_inverse(fit.gram) * sums.moments();
-    residuals = rows.acceleration - rows.terms * fit.coefficients;
+    found.residuals = rows.acceleration - rows.terms * fit.coefficients;
     if (round < kIdentification.reweighted) {
-      weights = huber_weights(residuals);
+      found.weights = huber_weights(found.residuals);
     }
   }
-  fit.noise = residuals.transpose() * weights.asDiagonal() * residuals /
-              std::max<double>(1.0, weights.sum() - static_cast<double>(terms));
+  const double free = found.weights.sum() - static_cast<double>(rows.terms.cols());
+  fit.noise = found.residuals.transpose() * found.weights.asDiagonal() * found.residuals /
+              std::max(1.0, free);
   fit.noise.diagonal().array() += std::numeric_limits<double>::min();
+  return found;
+}
+
+}  // namespace
+
+Eigen::MatrixXd free_noise(const WeakRows& rows) {
+  return regress(rows).fit.noise;
+}
+
+FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks) {
+  auto [fit, weights, residuals] = regress(rows);
+  const Eigen::Index n = rows.terms.rows();
+  const Eigen::Index terms = rows.terms.cols();
   const Eigen::Index axes = rows.acceleration.cols();
   Eigen::MatrixXd scores(n, axes * terms);
   for (Eigen::Index term = 0; term < terms; ++term) {

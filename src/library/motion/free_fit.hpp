@@ -23,6 +23,9 @@ struct FreeFit {
 /// windows than terms.
 FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks = 0);
 
+/// FreeFit::noise alone, without the covariance of the scores, which costs most.
+Eigen::MatrixXd free_noise(const WeakRows& rows);
+
 /// Pieces of a log whose scores count as independent. Chosen by hand.
 constexpr Eigen::Index kIndependentPieces = 24;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/eigen.hpp"
 #include "core/normal_equations.hpp"
@@ -234,6 +235,23 @@ void require_windows(const WeakRows& weak) {
   }
 }
 
+// The windows in which the terms explain most, by the determinant of the residuals' covariance.
+WeakRows explained_windows(const PlanarRows& rows) {
+  WeakRows best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const BetweenRows between :
+       {BetweenRows::ramps, BetweenRows::steps_after, BetweenRows::steps_before}) {
+    WeakRows windows = weak_rows(rows, {}, between);
+    require_windows(windows);
+    const double noise = free_noise(windows).determinant();
+    if (between == BetweenRows::ramps || noise < least) {
+      least = noise;
+      best = std::move(windows);
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters) {
@@ -247,8 +265,7 @@ std::vector<std::string> planar_parameter_names(const std::vector<std::string>& 
 }
 
 PlanarFit fit_planar(const PlanarRows& rows) {
-  const WeakRows weak = weak_rows(rows, {});
-  require_windows(weak);
+  const WeakRows weak = explained_windows(rows);
   const FreeFit free_fit = fit_freely(weak);
   const MinimumDistance best = fit_structure(free_fit, rows.thrusters.size());
   const SandwichErrors errors = sandwich(free_fit, planar_structure(best.parameters), best);
@@ -260,8 +277,7 @@ PlanarFit fit_planar(const PlanarRows& rows) {
 }
 
 ExpectedPlanarFit::ExpectedPlanarFit(const PlanarRows& rows)
-    : thrusters_(rows.thrusters), weak_(weak_rows(rows, {})) {
-  require_windows(weak_);
+    : thrusters_(rows.thrusters), weak_(explained_windows(rows)) {
   free_ = fit_freely(weak_);
   best_ = fit_structure(free_, thrusters_.size());
   const SandwichErrors errors = sandwich(free_, planar_structure(best_.parameters), best_);

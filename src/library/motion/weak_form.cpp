@@ -119,6 +119,22 @@ std::vector<Window> all_windows(const EquationRows& rows, const WindowShape& sha
   return windows;
 }
 
+// The trapezoidal rule gives half of an interval to the speed at either end: with steps both halves
+// belong to one of the ends.
+void integrate_steps(const EquationRows& rows, BetweenRows between,
+                     Eigen::Ref<Eigen::MatrixXd> thrusts) {
+  const Eigen::MatrixXd own = thrusts;
+  const Eigen::Index later = between == BetweenRows::steps_after ? 1 : 0;
+  const auto count = static_cast<std::size_t>(own.rows());
+  for (std::size_t stretch = 0; stretch < rows.starts.size(); ++stretch) {
+    const std::size_t end = stretch + 1 < rows.starts.size() ? rows.starts[stretch + 1] : count;
+    for (std::size_t row = rows.starts[stretch]; row + 1 < end; ++row) {
+      const auto first = static_cast<Eigen::Index>(row);
+      thrusts.row(first + later) = 0.5 * (own.row(first) + own.row(first + 1));
+    }
+  }
+}
+
 }  // namespace
 
 void PlanarTerms::evaluate(std::span<const double, kPlanarAxes> velocity,
@@ -149,7 +165,8 @@ WeakRows weak_rows(const EquationRows& rows, const WindowShape& shape) {
   return weak;
 }
 
-WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations) {
+WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations,
+                   BetweenRows between) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const auto count = static_cast<Eigen::Index>(rows.rows());
   EquationRows equation{.times_s = rows.times_s,
@@ -165,6 +182,10 @@ WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations
     const auto at = static_cast<std::size_t>(row);
     evaluated.evaluate(rows.velocity(at), rows.speed(at), row_terms);
     equation.terms.row(row) = row_terms.transpose();
+  }
+  if (between != BetweenRows::ramps) {
+    integrate_steps(equation, between,
+                    equation.terms.rightCols(equation.terms.cols() - kTermThrusters));
   }
   return weak_rows(equation, kPlanarWindow);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -71,7 +72,16 @@ struct WeakRows {
 /// Windows within stretches. Windows with a spike of the log are dropped.
 WeakRows weak_rows(const EquationRows& rows, const WindowShape& shape);
 
+/// Thruster speeds between two rows. A step that is integrated as a ramp comes half a row too early
+/// or too late.
+enum class BetweenRows : std::uint8_t {
+  ramps,        ///< in a straight line from row to row
+  steps_after,  ///< the speed of a row holds until the next
+  steps_before  ///< the speed of a row has held since the row before
+};
+
 /// kPlanarWindow in the plane. `accelerations` (rows × 3) may be empty.
-WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations);
+WeakRows weak_rows(const PlanarRows& rows, std::span<const double> accelerations,
+                   BetweenRows between = BetweenRows::ramps);
 
 }  // namespace kelpie

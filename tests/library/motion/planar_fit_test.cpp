@@ -69,7 +69,8 @@ PlanarRows drive(const PlanarVehicle& truth, double duration_s, double noise, co
         truth.acceleration(moved(v, k1, 0.5 * kStepS), speeds(t + 0.5 * kStepS));
     const PlanarVector k3 =
         truth.acceleration(moved(v, k2, 0.5 * kStepS), speeds(t + 0.5 * kStepS));
-    const PlanarVector k4 = truth.acceleration(moved(v, k3, kStepS), speeds(t + kStepS));
+    // Before a step at the end.
+    const PlanarVector k4 = truth.acceleration(moved(v, k3, kStepS), speeds(t + 0.999 * kStepS));
     for (std::size_t i = 0; i < v.size(); ++i) {
       v[i] += kStepS / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
     }
@@ -99,6 +100,30 @@ TEST(PlanarFit, FindsTheVehicleThatDroveWithoutNoise) {
     EXPECT_NEAR(fit.parameters[i].value, truth[i], 2e-3 * std::abs(truth[i]) + 1e-4)
         << fit.parameters[i].name;
     EXPECT_NE(fit.parameters[i].state, ParameterState::not_told) << fit.parameters[i].name;
+  }
+}
+
+// New speeds every 2.5 s, as of a program that holds its commands.
+std::vector<double> held(double t) {
+  RandomStream random(static_cast<std::uint64_t>(std::floor(t / 2.5 + 1e-6)), "steps");
+  return {random.uniform(-12.0, 12.0), random.uniform(-12.0, 12.0), random.uniform(-10.0, 10.0)};
+}
+
+// A row has the speeds from the row on, or those until the row.
+TEST(PlanarFit, StepsOfCommandsAreNoRamps) {
+  for (const bool is_until : {false, true}) {
+    PlanarRows rows = drive(vehicle(), 900.0, 1e-3, held);
+    if (is_until) {
+      rows.speeds.insert(rows.speeds.begin(), 3, 0.0);
+      rows.speeds.resize(3 * rows.rows());
+    }
+    const PlanarFit fit = scaled_by_thrust(fit_planar(rows), {{"a", 0.026}});
+    EXPECT_LT(fit.misfit, 2.0);
+    const PlanarVehicle found = fit.vehicle();
+    EXPECT_NEAR(found.surge_inertia, 85.0, 1.0) << is_until;
+    EXPECT_NEAR(found.sway_inertia, 95.0, 1.0) << is_until;
+    EXPECT_NEAR(found.yaw_inertia, 8.5, 0.3) << is_until;
+    EXPECT_NEAR(found.linear_drag[2], 1.3, 0.06) << is_until;
   }
 }
 
