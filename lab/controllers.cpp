@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.hpp"
 #include "lab/reallocation.hpp"
 #include "lab/reckoners.hpp"
 #include "vehicle/dynamics.hpp"
@@ -206,7 +206,7 @@ TrackingError tracking_error(const Reference& reference, const Sensed& sensed) {
   const Eigen::Rotation2Dd from_reference(reference.pose.z() - sensed.pose.z());
   TrackingError error;
   error.pose.head<2>() = to_body * (reference.pose - sensed.pose).head<2>();
-  error.pose.z() = std::remainder(reference.pose.z() - sensed.pose.z(), 2.0 * std::numbers::pi);
+  error.pose.z() = wrapped(reference.pose.z() - sensed.pose.z());
   error.wanted << from_reference * Eigen::Vector2d(reference.speed, 0.0), reference.yaw_rate;
   error.velocity = error.wanted - sensed.velocity;
   const double r = sensed.velocity.z();

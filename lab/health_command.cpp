@@ -8,6 +8,7 @@
 
 #include "chart/text_table.hpp"
 #include "cli/output.hpp"
+#include "core/quantile.hpp"
 #include "health/card.hpp"
 #include "health/factors.hpp"
 #include "health/tuning.hpp"
@@ -93,9 +94,7 @@ void judge_last(const HealthStudyArguments& options, const health::HealthCard& c
     const health::Estimate size = change.course.change;
     const double relative = size.value / change.course.before.value;
     study.inside +=
-        std::abs(relative - truth) <= health::kNormal90 * size.error / change.course.before.value
-            ? 1
-            : 0;
+        std::abs(relative - truth) <= kNormal90 * size.error / change.course.before.value ? 1 : 0;
     study.drifts += change.course.kind == health::CourseKind::drift ? 1 : 0;
   }
 }

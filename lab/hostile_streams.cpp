@@ -9,6 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "core/angle.hpp"
+
 namespace kelpie::lab {
 namespace {
 
@@ -332,7 +334,7 @@ std::vector<HostileKind> kinds_of_sensors() {
                 double heading = 0.0;
                 for (Index i = 0; i < kSamples; ++i) {
                   heading += 3.0 * kPeriodS * s.x(2, i);
-                  s.x(5, i) = std::remainder(heading, 2.0 * pi);
+                  s.x(5, i) = wrapped(heading);
                 }
               }),
       spoiled("deg_to_rad", "yaw in degrees, from the middle on in radians", yaw_in_degrees(0)),

@@ -9,6 +9,7 @@
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "cli/output.hpp"
+#include "core/quantile.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "lab/commands.hpp"
 #include "lab/planar_truth.hpp"
@@ -20,7 +21,6 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr double kNormal90 = 1.645;
 constexpr double kRounding = 1e-9;
 
 // As the log is: in the plane FLU, on six axes FRD.

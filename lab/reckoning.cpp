@@ -19,10 +19,10 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr double kStill = 0.1;            // m, less than which a vehicle hasn't gone anywhere
-constexpr double kReturnS = 2.0;          // of velocities after an outage, for the largest step
-constexpr double kHeardS = 2.0;           // of velocities after a cut of the log, before an outage
-constexpr double kNinetyPercent = 4.605;  // of a χ² with two degrees of freedom
+constexpr double kStill = 0.1;          // m, less than which a vehicle hasn't gone anywhere
+constexpr double kReturnS = 2.0;        // of velocities after an outage, for the largest step
+constexpr double kHeardS = 2.0;         // of velocities after a cut of the log, before an outage
+constexpr double kChiSquare90 = 4.605;  // two degrees of freedom
 
 struct Outage {
   std::size_t begin = 0;
@@ -62,7 +62,7 @@ std::vector<NamedNavigator> copies(const std::vector<NamedNavigator>& navigators
 // Whether a point is within the 90 % ellipse.
 bool is_inside(const std::array<double, 4>& p, double x, double y) {
   const double det = p[0] * p[3] - p[1] * p[2];
-  return (p[3] * x * x - (p[1] + p[2]) * x * y + p[0] * y * y) / det <= kNinetyPercent;
+  return (p[3] * x * x - (p[1] + p[2]) * x * y + p[0] * y * y) / det <= kChiSquare90;
 }
 
 // When velocities are measured again, for some seconds of the same drive.

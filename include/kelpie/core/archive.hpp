@@ -23,9 +23,9 @@ namespace kelpie {
 ///
 /// so that saving and loading can't drift apart. The loading object is made with the arguments of
 /// the saved object; values that follow from the arguments are not in the archive. Saving writes to
-/// the archive only, and rejects numbers that aren't finite, as loading does. Loading checks every
-/// number and length before use, and throws InputError naming the faulty part; the object may only
-/// be destroyed then.
+/// the archive only, so that others may read the object meanwhile, and rejects numbers that aren't
+/// finite, as loading does. Loading checks every number and length before use, and throws
+/// InputError naming the faulty part; the object may only be destroyed then.
 class Archive {
  public:
   Archive() = default;  ///< Saves.
@@ -52,6 +52,17 @@ class Archive {
     whole_number(wide, static_cast<std::int64_t>(least), static_cast<std::int64_t>(most));
     if (loading_) {
       value = static_cast<T>(wide);
+    }
+  }
+
+  /// One of the values of an enumeration, from `first` to `last`.
+  template <typename Enum>
+    requires std::is_enum_v<Enum>
+  void choice(Enum& value, Enum first, Enum last) {
+    auto place = static_cast<int>(value);
+    whole(place, static_cast<int>(first), static_cast<int>(last));
+    if (loading_) {
+      value = static_cast<Enum>(place);
     }
   }
 

@@ -32,10 +32,11 @@ struct TrainedModel;
 ///
 /// Spans of another size throw InputError; nothing is written or learned. At an x with a number
 /// that isn't finite, predictions and Jacobian are NaN, the interval is infinite, the novelty 1.
-/// Several threads may predict at a time. An update needs the model alone: calls of update(),
-/// predict(), save() or trained() during an update throw InputError; SharedModel is for concurrent
-/// use. Movable at the cost of a pointer; a model that was moved from can only be assigned or
-/// destroyed. Copies are deep.
+/// Several threads may predict and save at a time. An update needs the model alone: calls during an
+/// update throw InputError, but for decisions(), axis(), diagnosis(), mechanisms(), ready() and
+/// copies, which belong to the updating thread; SharedModel is for concurrent use. A number of an
+/// axis that there isn't throws InputError. Movable at the cost of a pointer; a model that was
+/// moved from can only be assigned or destroyed. Copies are deep.
 class DynamicsModel final : public OnlineModel {
  public:
   /// Takes the scaling from the first samples. Throws InputError on settings that don't validate,
@@ -69,7 +70,7 @@ class DynamicsModel final : public OnlineModel {
               const AxisDone& done) override;
   void learn_held_back() override;
   std::span<const Decision> decisions() const override;
-  const OnlineRegressor& axis(std::size_t i) const override;
+  const OnlineRegressor& axis(std::size_t axis) const override;
 
   /// The values at x, of inputs() numbers, into y, of axes(). Allocates nothing.
   void predict(std::span<const double> x, std::span<double> y) const;
@@ -133,9 +134,6 @@ class DynamicsModel final : public OnlineModel {
   friend void set_nominal(DynamicsModel& model, std::size_t axis,
                           std::span<const Coefficient> known);
   struct Parts;
-
-  DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
-                ModelSettings settings, const AxisScaling* scaling);
 
   std::unique_ptr<Parts> parts_;  ///< never null, unless moved from
 };

@@ -16,6 +16,9 @@ double quantile(std::span<double> values, double p);
 /// no NaN, 0 < coverage < 1. Allocates nothing.
 double conformal_bound(std::span<double> values, double coverage);
 
+/// Half of the 90 % interval of a Gaussian variable over the standard deviation.
+inline constexpr double kNormal90 = 1.6448536269514722;
+
 /// Standard deviation of a Gaussian variable over the median of its magnitude.
 inline constexpr double kSigmaPerMedian = 1.4826;
 

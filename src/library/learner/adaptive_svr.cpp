@@ -39,7 +39,7 @@ AdaptiveSvr::AdaptiveSvr(std::size_t inputs, const OnlineSvrSettings& settings, 
     : learners_(make_learners(inputs, settings, terms)),
       change_(learners_.size(), TermChange(inputs, terms)),
       model_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0),
-      memory_(learners_.front().buffer(), settings),
+      past_models_(learners_.front().buffer(), settings),
       misfit_(kOnline.change.least_misfits, kOnline.change.misfit_every),
       sample_(inputs + terms),
       draft_(champion().buffer().kernel(), learners_.size() > 1 ? settings.places() : 0) {}
@@ -72,7 +72,7 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
     if (task_ != SliceTask::recall) {
-      memory_.observe(z, y, error, t);
+      past_models_.observe(z, y, error, t);
     }
     measure_misfit();
     if (task_ == SliceTask::none) {
@@ -97,11 +97,11 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
 void AdaptiveSvr::shift(std::span<const double> step, const Decision& news) {
   detector_.dismiss();  // errors until now are of the vehicle before
   if (!step.empty() && news.changed) {
-    memory_.promote_challenger(news.changed_since);
+    past_models_.promote_challenger(news.changed_since);
   } else if (!step.empty() && news.withdrawn) {
-    memory_.withdraw();
+    past_models_.withdraw();
   } else {
-    memory_.settle();
+    past_models_.settle();
   }
   tally_.changes += news.changed ? 1 : 0;
   tally_.withdrawn += news.withdrawn ? 1 : 0;
@@ -152,11 +152,11 @@ void AdaptiveSvr::detect_change(Decision& decision, const ChangeDetector::Errors
       decision.suspected = true;
       break;
     case Suspicion::confirmed:
-      memory_.promote_challenger(detector_.since());
+      past_models_.promote_challenger(detector_.since());
       declare_change(decision, detector_.since());
       break;
     case Suspicion::withdrawn:
-      memory_.withdraw();
+      past_models_.withdraw();
       promote(decision);
       decision.withdrawn = true;
       break;
@@ -168,15 +168,16 @@ void AdaptiveSvr::detect_change(Decision& decision, const ChangeDetector::Errors
 
 // Takes up the past model that fits; without one, keeps the champion when it is time to.
 void AdaptiveSvr::manage_past_models(Decision& decision, double t) {
-  if (const std::optional<std::size_t> known = memory_.fitting()) {
+  if (const std::optional<std::size_t> known = past_models_.fitting()) {
     start(SliceTask::recall);
     past_ = *known;
     begun_s_ = t;
-    since_s_ = memory_.since();
+    since_s_ = past_models_.since();
     decision.returning = true;
     decision.changed_since = since_s_;
-  } else if (memory_.due() && !detector_.trying() && champion().ready() && !decision.unfinished) {
-    memory_.keep(champion(), model(), change(), t);
+  } else if (past_models_.due() && !detector_.trying() && champion().ready() &&
+             !decision.unfinished) {
+    past_models_.keep(champion(), model(), change(), t);
   }
 }
 
@@ -211,7 +212,7 @@ void AdaptiveSvr::clear_challenger() {
 
 void AdaptiveSvr::recall(Decision& decision) {
   challenger().limit(budget_.split_half());
-  const PastModel& past = memory_.models()[past_];
+  const PastModel& past = past_models_.models()[past_];
   bool ready = false;
   for (int k = 0; k < kOnline.task.recall_slices && !ready; ++k) {
     ready = challenger().relearn_slice(past, begun_s_);
@@ -220,7 +221,7 @@ void AdaptiveSvr::recall(Decision& decision) {
     task_ = SliceTask::none;
     decision.recalled = past.info.number;
     detector_.start_probation(past.info.usual_error);
-    memory_.recall(past_, since_s_);
+    past_models_.recall(past_, since_s_);
     declare_change(decision, since_s_);
   }
 }
@@ -290,34 +291,34 @@ RescaleStatus AdaptiveSvr::catch_up(const SampleMap& map) {
   add_change();
   tally_.forgotten += step.forgotten;
   tally_.regained += step.regained;
-  memory_.rescale(map);
+  past_models_.rescale(map);
   start(SliceTask::follow);
   past_ = 0;
   return RescaleStatus::switched;
 }
 
 RescaleStatus AdaptiveSvr::follow(const SampleMap& map) {
-  if (past_ == memory_.models().size()) {
-    memory_.finish_rescale();
+  if (past_ == past_models_.models().size()) {
+    past_models_.finish_rescale();
     task_ = SliceTask::none;
     return RescaleStatus::done;
   }
-  const PastModel& past = memory_.models()[past_];
+  const PastModel& past = past_models_.models()[past_];
   if (challenger().relearn_slice(past, past.info.until_s, map)) {
-    memory_.rescale_model(past_++, map, challenger().model());
+    past_models_.rescale_model(past_++, map, challenger().model());
     clear_challenger();
   }
   return RescaleStatus::under_way;
 }
 
 bool AdaptiveSvr::add_past(const PastModel& past) {
-  if (memory_.models().size() == memory_.capacity()) {
+  if (past_models_.models().size() == past_models_.capacity()) {
     return false;
   }
   PastModel known = past;
   challenger().relearn(known, known.info.until_s);
   known.function = challenger().model();
-  memory_.add(known);
+  past_models_.add(known);
   return true;
 }
 
@@ -333,20 +334,20 @@ void AdaptiveSvr::visit(Archive& archive) {
   }
   archive.part("misfit", misfit_);
   archive.part("tally", tally_);
-  archive.part("memory", memory_);
-  const bool of_a_past_model = task_ == SliceTask::follow ? past_ <= memory_.models().size()
-                                                          : past_ < memory_.models().size();
+  archive.part("memory", past_models_);
+  const bool of_a_past_model = task_ == SliceTask::follow ? past_ <= past_models_.models().size()
+                                                          : past_ < past_models_.models().size();
   archive.require(of_a_past_model || (task_ != SliceTask::follow && task_ != SliceTask::recall),
                   "learns a past model that there isn't");
-  add_change();
+  if (archive.loading()) {
+    add_change();
+  }
 }
 
 void AdaptiveSvr::visit_task(Archive& archive) {
-  auto job = static_cast<int>(task_);
-  archive.whole(job, 0, static_cast<int>(SliceTask::recall));
-  task_ = static_cast<SliceTask>(job);
+  archive.choice(task_, SliceTask{}, SliceTask::recall);
   archive.require(learners_.size() > 1 || task_ == SliceTask::none || task_ == SliceTask::follow,
-                  "has a job without a place");
+                  "has a task without a place");
   if (task_ == SliceTask::rescale) {
     archive.part("draft", draft_);
   }

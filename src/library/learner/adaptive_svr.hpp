@@ -63,7 +63,7 @@ class AdaptiveSvr final : public OnlineRegressor {
 
   /// Tries the past models at once and halves the evidence that a challenger needs.
   void alert(double since_s, bool another) noexcept override {
-    memory_.alert(since_s, another);
+    past_models_.alert(since_s, another);
     detector_.expect_change();
   }
   double predict(std::span<const double> z) const noexcept override;
@@ -88,7 +88,7 @@ class AdaptiveSvr final : public OnlineRegressor {
 
   /// Number of past models, counted from the first, in the scale of the samples.
   std::size_t rescaled() const {
-    return task_ == SliceTask::follow ? past_ : memory_.models().size();
+    return task_ == SliceTask::follow ? past_ : past_models_.models().size();
   }
 
   /// core/archive.hpp. The challenger is part of the state only while its place is used.
@@ -105,7 +105,7 @@ class AdaptiveSvr final : public OnlineRegressor {
     misfit_.clear();
   }
 
-  const PastModels& memory() const { return memory_; }
+  const PastModels& past_models() const { return past_models_; }
   const ChangeDetector& detector() const { return detector_; }
   SliceTask task() const { return task_; }
 
@@ -149,7 +149,7 @@ class AdaptiveSvr final : public OnlineRegressor {
   std::size_t champion_ = 0;
   SvrFunction model_;  ///< the champion's, with the change; without a change of no use
   ChangeDetector detector_;
-  PastModels memory_;
+  PastModels past_models_;
   RobustScale misfit_;          ///< residuals in the champion's own buffer, without short range
   std::vector<double> sample_;  ///< scratch
   Tally tally_;                 ///< over all champions

@@ -447,7 +447,7 @@ LearnerState state_of(const Committee& committee) {
                         : detector.trying()     ? Comparison::challenger
                                                 : Comparison::none,
           .task = learner.task(),
-          .past_models = learner.memory().state(),
+          .past_models = learner.past_models().state(),
           .relearning = !committee.to_learn_.done()};
 }
 

@@ -38,7 +38,7 @@ void ConformalInterval::observe(double error) {
     return;
   }
   if (size_ >= least()) {
-    follow(level_of(error));
+    update_level(level_of(error));
   }
   keep(error);
   if (size_ >= least()) {
@@ -68,7 +68,7 @@ double ConformalInterval::level_of(double error) const {
 }
 
 // Algorithm 1 of the paper, with σ = 1 / (2 kOnline.interval.stretch).
-void ConformalInterval::follow(double level) {
+void ConformalInterval::update_level(double level) {
   constexpr double kShare = 0.5 / kOnline.interval.stretch;
   double total = 0.0;
   for (std::size_t i = 0; i < kPaces.size(); ++i) {

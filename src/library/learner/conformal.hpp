@@ -45,7 +45,7 @@ class ConformalInterval {
 
   std::span<const double> sorted() const { return std::span(sorted_).first(size_); }
   double level_of(double error) const;
-  void follow(double level);
+  void update_level(double level);
   void keep(double error);
   double quantile_now() const;
 

@@ -285,7 +285,7 @@ void OnlineSvr::rescale(const SampleMap& map) {
   nodes_->leaving.reset();
   progress_.waiting = 0;
   progress_.unfinished =
-      nodes_->buffer.size() == settings_.places();  // nobody has left for the next sample yet
+      nodes_->buffer.size() == settings_.places();  // no sample has left for the next yet
   progress_.pruned_weight = false;
   nodes_->solved = solver().restart(nodes_->buffer.problem());
   Decision decision;
@@ -413,12 +413,12 @@ void OnlineSvr::visit_leaving(Archive& archive) {
   constexpr std::array kCounts{&Decision::outliers, &Decision::released, &Decision::forgotten};
   Nodes::Leaving leaving =
       nodes_->leaving.value_or(Nodes::Leaving{.sample = 0, .count = kCounts.front()});
-  bool somebody = nodes_->leaving.has_value();
-  archive.flag(somebody);
+  bool is_leaving = nodes_->leaving.has_value();
+  archive.flag(is_leaving);
   std::ptrdiff_t count = std::ranges::find(kCounts, leaving.count) - kCounts.begin();
   archive.whole(count, 0, std::ssize(kCounts) - 1);
   archive.whole(leaving.sample);
-  if (archive.loading() && somebody) {
+  if (archive.loading() && is_leaving) {
     archive.require(leaving.sample < nodes_->buffer.size(), "removes a sample that there isn't");
     nodes_->leaving = {.sample = leaving.sample, .count = kCounts[static_cast<std::size_t>(count)]};
   }

@@ -278,9 +278,7 @@ void PastModels::visit(Archive& archive) {
     archive.number(sample.t);
     archive.number(sample.error);
   }
-  auto state = static_cast<int>(state_);
-  archive.whole(state, 0, static_cast<int>(State::on_trial));
-  state_ = static_cast<State>(state);
+  archive.choice(state_, State{}, State::on_trial);
   archive.whole(age_);
   archive.number(from_s_);
   archive.number(grown_s_);
@@ -291,10 +289,12 @@ void PastModels::visit(Archive& archive) {
   std::size_t place = kept_as_.value_or(capacity_);
   archive.whole(place, 0, capacity_);
   archive.require(place == capacity_ || place < size_, "serves a past model that there isn't");
-  kept_as_ = place < size_ ? std::optional(place) : std::nullopt;
   std::size_t before = before_.value_or(capacity_);
   archive.whole(before, 0, capacity_);
-  before_ = before < size_ ? std::optional(before) : std::nullopt;
+  if (archive.loading()) {
+    kept_as_ = place < size_ ? std::optional(place) : std::nullopt;
+    before_ = before < size_ ? std::optional(before) : std::nullopt;
+  }
   archive.whole(since_kept_);
   archive.flag(outdated_);
   archive.flag(another_);

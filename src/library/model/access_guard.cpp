@@ -22,8 +22,8 @@ AccessGuard::Reader::Reader(const AccessGuard& model) : model_(model) {
 }
 
 AccessGuard::Writer::Writer(const AccessGuard& model) : model_(model) {
-  int nobody = 0;
-  if (!model_.users_.compare_exchange_strong(nobody, kWriter)) {
+  int none = 0;
+  if (!model_.users_.compare_exchange_strong(none, kWriter)) {
     refuse();
   }
 }

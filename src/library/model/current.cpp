@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
@@ -20,8 +20,6 @@ namespace kelpie {
 namespace {
 
 constexpr const auto& kWaterSearch = kModelTuning.water;
-constexpr double kFullTurn = 2.0 * std::numbers::pi;  // rad
-constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 constexpr std::size_t kSurge = 0, kSway = 1, kYaw = 5;  // velocity_axis()
 

@@ -111,8 +111,8 @@ Snapshot DynamicsAxis::trained(std::string name) const {
           .known = known_places(svr().champion().buffer())};
 }
 
-void DynamicsAxis::follow(std::span<const CommandGain> gains, std::span<const double> step,
-                          const Decision& news) {
+void DynamicsAxis::apply_change(std::span<const CommandGain> gains, std::span<const double> step,
+                                const Decision& news) {
   if (scaling() == nullptr) {
     return;
   }
@@ -154,7 +154,7 @@ std::vector<Coefficient> DynamicsAxis::coefficients() const {
 std::vector<StoredPastModel> DynamicsAxis::past_models() const {
   std::vector<StoredPastModel> list = awaited_;
   if (scaling() != nullptr) {
-    const std::span<const PastModel> models = svr().memory().models();
+    const std::span<const PastModel> models = svr().past_models().models();
     for (std::size_t k = 0; k < models.size(); ++k) {
       const bool follows = before_scaling() != nullptr && k >= svr().rescaled();
       list.push_back(in_log_units(models[k], follows ? *before_scaling() : *scaling()));

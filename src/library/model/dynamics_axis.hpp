@@ -63,8 +63,8 @@ class DynamicsAxis final : public Scaled {
   /// The vehicle has changed. `gains`: all that was learned holds for the commands times these
   /// factors; if empty, Committee::shift() by a step of the coefficients of the first terms, the
   /// last number of the term 1 [target unit per unit of the term].
-  void follow(std::span<const CommandGain> gains, std::span<const double> step,
-              const Decision& news);
+  void apply_change(std::span<const CommandGain> gains, std::span<const double> step,
+                    const Decision& news);
 
   std::vector<Coefficient> coefficients() const override;
   std::vector<MemberShare> members() const override { return learner_.members(); }

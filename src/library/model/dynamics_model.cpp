@@ -97,6 +97,10 @@ void require_complete(std::span<const std::string> inputs, std::span<const std::
   settings.validate();
 }
 
+bool is_refused(const Decision& decision) {
+  return decision.verdict == Verdict::invalid || decision.verdict == Verdict::implausible;
+}
+
 }  // namespace
 
 struct DynamicsModel::Parts {
@@ -106,8 +110,10 @@ struct DynamicsModel::Parts {
   void order_axes();
   void monitor_change(std::span<const double> x, std::span<const double> y, double t);
   void believe_diagnosis();
-  void follow(ChangeMonitor::Event event);
-  void watch(std::span<const double> x, std::span<const double> y, double t);
+  void apply_change(ChangeMonitor::Event event);
+  void update_diagnosis(std::span<const double> x, std::span<const double> y, double t);
+  void observe_steady(std::span<const double> x, std::span<const double> y, double t);
+  GuardedAxis& axis_at(std::size_t axis);
   void visit(Archive& archive);
 
   std::vector<std::string> input_names;
@@ -160,6 +166,12 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
   }
 }
 
+GuardedAxis& DynamicsModel::Parts::axis_at(std::size_t axis) {
+  require(axis < axes.size(), "axis",
+          std::to_string(axis) + " given; there are " + std::to_string(axes.size()));
+  return axes[axis];
+}
+
 // Axes with unfinished work on the sample before come first.
 void DynamicsModel::Parts::order_axes() {
   order.clear();
@@ -182,13 +194,10 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
     change->restart();
     return;
   }
-  if (!std::ranges::all_of(decisions, [](const Decision& decision) {
-        return decision.had_model && decision.verdict != Verdict::invalid &&
-               decision.verdict != Verdict::implausible;
-      })) {
-    return;
+  if (std::ranges::all_of(decisions, &Decision::had_model) &&
+      std::ranges::none_of(decisions, is_refused)) {
+    apply_change(change->update(x, y, t));
   }
-  follow(change->update(x, y, t));
 }
 
 // The diagnosis names a thruster by its own equations of motion and on a window of its own, often
@@ -203,11 +212,11 @@ void DynamicsModel::Parts::believe_diagnosis() {
   }
   named_since_s = last.since_s;
   if (last.count == 1) {
-    follow(change->believe_cause(last.causes.front(), last.since_s));
+    apply_change(change->believe_cause(last.causes.front(), last.since_s));
   }
 }
 
-void DynamicsModel::Parts::follow(ChangeMonitor::Event event) {
+void DynamicsModel::Parts::apply_change(ChangeMonitor::Event event) {
   auto& decisions = state.decisions;
   if (event == ChangeMonitor::Event::none) {
     return;
@@ -219,29 +228,31 @@ void DynamicsModel::Parts::follow(ChangeMonitor::Event event) {
     decisions[i].changed = event == ChangeMonitor::Event::changed;
     decisions[i].withdrawn = event == ChangeMonitor::Event::withdrawn;
     decisions[i].changed_since = decisions[i].changed ? change->since() : 0.0;
-    axes[i].follow(change->gains(), change->step(i), decisions[i]);
+    axes[i].apply_change(change->gains(), change->step(i), decisions[i]);
   }
 }
 
-// What is of the vehicle, not of an axis, learns only samples that all axes trust.
-void DynamicsModel::Parts::watch(std::span<const double> x, std::span<const double> y, double t) {
-  if (diagnosis) {
-    diagnosis->update(x, y, t);
-    if (change) {
-      believe_diagnosis();
-    }
+void DynamicsModel::Parts::update_diagnosis(std::span<const double> x, std::span<const double> y,
+                                            double t) {
+  if (!diagnosis) {
+    return;
   }
-  const auto& decisions = state.decisions;
-  if (!steady || std::ranges::any_of(decisions, [](const Decision& decision) {
-        return decision.verdict == Verdict::invalid || decision.verdict == Verdict::implausible;
-      })) {
+  diagnosis->update(x, y, t);
+  if (change) {
+    believe_diagnosis();
+  }
+}
+
+void DynamicsModel::Parts::observe_steady(std::span<const double> x, std::span<const double> y,
+                                          double t) {
+  if (!steady || std::ranges::any_of(state.decisions, is_refused)) {
     return;
   }
   const Accelerations learned = [this](std::span<const double> at, std::span<double> a) {
     std::ranges::transform(axes, a.begin(),
                            [at](const GuardedAxis& axis) { return axis.predict(at); });
   };
-  const bool ready = std::ranges::all_of(decisions, &Decision::had_model);
+  const bool ready = std::ranges::all_of(state.decisions, &Decision::had_model);
   steady->observe(x, y, t, ready ? learned : Accelerations{});
 }
 
@@ -321,7 +332,9 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
     }
   }
   state.share_changes([&](std::size_t i) -> OnlineRegressor& { return model.axes[i]; });
-  if (model.change && std::ranges::all_of(model.axes, &GuardedAxis::trusted_last)) {
+  // What is of the vehicle, not of an axis, learns only samples that all axes trust.
+  const bool is_trusted = std::ranges::all_of(model.axes, &GuardedAxis::trusted_last);
+  if (model.change && is_trusted) {
     model.monitor_change(x, y, now);
   }
   model.work.learned(state.crowded_out());
@@ -331,8 +344,9 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
   if (model.steady && std::ranges::any_of(state.decisions, &Decision::changed)) {
     model.steady->restart();
   }
-  if (std::ranges::all_of(model.axes, &GuardedAxis::trusted_last)) {
-    model.watch(x, y, now);
+  if (is_trusted) {
+    model.update_diagnosis(x, y, now);
+    model.observe_steady(x, y, now);
   }
   state.stamp_changes();
 }
@@ -343,6 +357,7 @@ void DynamicsModel::learn_held_back() {
 }
 
 void DynamicsModel::limit(const Budget& budget) {
+  const AccessGuard::Writer writer(parts_->state.access);
   parts_->budget = budget;
 }
 
@@ -354,12 +369,12 @@ std::span<const Decision> DynamicsModel::decisions() const {
   return parts_->state.decisions;
 }
 
-const OnlineRegressor& DynamicsModel::axis(std::size_t i) const {
-  return parts_->axes[i];
+const OnlineRegressor& DynamicsModel::axis(std::size_t axis) const {
+  return parts_->axis_at(axis);
 }
 
 const DynamicsAxis& DynamicsModel::mechanisms(std::size_t axis) const {
-  return parts_->axes[axis].in_service();
+  return parts_->axis_at(axis).in_service();
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
@@ -386,6 +401,7 @@ const Diagnosis* DynamicsModel::diagnosis() const {
 }
 
 std::vector<Finding> DynamicsModel::findings() const {
+  const AccessGuard::Reader reader(parts_->state.access);
   std::vector<Finding> findings;
   if (parts_->diagnosis) {
     findings = parts_->diagnosis->findings();
@@ -399,11 +415,13 @@ std::vector<Finding> DynamicsModel::findings() const {
 }
 
 std::vector<StoredPastModel> DynamicsModel::past_models(std::size_t axis) const {
-  return parts_->axes[axis].past_models();
+  const AccessGuard::Reader reader(parts_->state.access);
+  return parts_->axis_at(axis).past_models();
 }
 
 void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastModel> models) {
-  parts_->axes[axis].set_past_models(std::move(models));
+  const AccessGuard::Writer writer(parts_->state.access);
+  parts_->axis_at(axis).set_past_models(std::move(models));
 }
 
 bool DynamicsModel::ready() const {
@@ -413,7 +431,7 @@ bool DynamicsModel::ready() const {
 std::string DynamicsModel::save() const {
   const AccessGuard::Reader reader(parts_->state.access);
   Archive archive;
-  parts_->visit(archive);  // an archive that saves only reads
+  parts_->visit(archive);  // reads only
   return archive.bytes();
 }
 
@@ -451,11 +469,10 @@ TrainedModel DynamicsModel::trained() const {
 }
 
 void set_nominal(DynamicsModel& model, std::size_t axis, std::span<const Coefficient> known) {
-  std::vector<GuardedAxis>& axes = model.parts_->axes;
-  require(axis < axes.size(), "axis",
-          std::to_string(axis) + " given; there are " + std::to_string(axes.size()));
+  const AccessGuard::Writer writer(model.parts_->state.access);
+  GuardedAxis& learner = model.parts_->axis_at(axis);
   if (!known.empty()) {
-    axes[axis].expect_vehicle(coefficients_of(known, model.mechanisms(axis).terms()));
+    learner.expect_vehicle(coefficients_of(known, learner.in_service().terms()));
   }
 }
 

@@ -67,10 +67,10 @@ class GuardedAxis final : public OnlineRegressor {
   /// Of the trusted axis.
   std::vector<StoredPastModel> past_models() const { return trusted().past_models(); }
 
-  /// DynamicsAxis::follow() of the trusted axis.
-  void follow(std::span<const CommandGain> gains, std::span<const double> step,
-              const Decision& news) {
-    trusted().follow(gains, step, news);
+  /// DynamicsAxis::apply_change() of the trusted axis.
+  void apply_change(std::span<const CommandGain> gains, std::span<const double> step,
+                    const Decision& news) {
+    trusted().apply_change(gains, step, news);
   }
 
   /// DynamicsAxis::expect_vehicle(). A further axis that begins anew begins with these, too.

@@ -211,9 +211,7 @@ void ScaleTracker::visit(Archive& archive) {
   if (scaling_) {
     archive.part("scaling", *scaling_, inputs_, terms_.size());
   }
-  auto move = static_cast<int>(move_);
-  archive.whole(move, 0, static_cast<int>(Move::adopted));
-  move_ = static_cast<Move>(move);
+  archive.choice(move_, Move{}, Move::adopted);
   archive.require(known || !on_the_way(), "is on the way from no scale");
   if (on_the_way()) {
     archive.part("other scaling", next_, inputs_, terms_.size());

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/core/error.hpp"
 #include "model/answer.hpp"
 #include "model/dynamics_axis.hpp"
 #include "model/model_block.hpp"
@@ -39,6 +40,8 @@ SharedModel::SharedModel(DynamicsModel model, std::size_t snapshots)
       terms_(std::make_unique<TermSet>(model_.mechanisms(0).terms())),
       count_(snapshots),
       publications_(std::make_unique<Publication[]>(snapshots)) {  // NOLINT(*-avoid-c-arrays)
+  require(snapshots >= 2, "snapshots",
+          "has to be at least 2: one is read while another is written");
   for (std::size_t i = 0; i < count_; ++i) {
     for (std::size_t k = 0; k < model_.axes(); ++k) {
       publications_[i].axes.push_back(model_.mechanisms(k).snapshot());

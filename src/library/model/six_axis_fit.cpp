@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/eigen.hpp"
+#include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
@@ -315,8 +316,7 @@ class Search {
     for (std::size_t row = 1; row < rows_.rows(); ++row) {
       steps.push_back(rows_.times_s[row] - rows_.times_s[row - 1]);
     }
-    std::ranges::nth_element(steps, steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2));
-    return steps[steps.size() / 2];
+    return quantile(steps, 0.5);
   }
 
   // Further standard errors, of what no log tells.
@@ -355,7 +355,7 @@ SixAxisFit Search::collected() const {
   as_matrix(fit.free_terms) = free_.coefficients.topRows(terms);
   fit.covariance = Matrix(names.size(), names.size());
   auto covariance = as_matrix(fit.covariance);
-  const double student = kIdentification.student90 / kIdentification.normal90;
+  const double student = kIdentification.student90 / kNormal90;
   covariance(best_.free, best_.free) =
       student * student * fit.misfit * errors_.covariance + velocity_covariance();
   const Eigen::VectorXd blur = blurs(errors_.covariance);

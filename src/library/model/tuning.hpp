@@ -86,7 +86,7 @@ inline constexpr struct ModelTuning {
     double confirmed_share = 0.7;       ///< reached after 36 s of implausible samples alone
     std::int64_t least_explained = 20;  ///< samples before a candidate can convince
     double convinced_s = 4.0;           ///< s of probation before a candidate can convince
-    double moving = 0.3;     ///< standard deviations: targets that move less convince nobody
+    double moving = 0.3;     ///< standard deviations: targets that move less are no evidence
     double explained = 0.5;  ///< of the variance, convinces
     double clip = 3.0;       ///< largest error counted [standard deviations]
     double look_s = 5.0;     ///< s between two looks for a scale too large

@@ -36,7 +36,9 @@ void WorkLimit::learned(bool crowded_out) {
 
 void WorkLimit::visit(Archive& archive) {
   archive.whole(most_, least_, kWorkTuning.most * least_);
-  left_ = most_;
+  if (archive.loading()) {
+    left_ = most_;
+  }
 }
 
 }  // namespace kelpie

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/text.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "motion/states.hpp"
@@ -15,9 +16,8 @@
 namespace kelpie {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;  // rad
-constexpr double kToUnitLength = 1.0;                 // 1/s, return of a quaternion to unit length
-constexpr double kLeastCosine = 0.1;                  // of pitch: roll is lost at a right angle
+constexpr double kToUnitLength = 1.0;  // 1/s, return of a quaternion to unit length
+constexpr double kLeastCosine = 0.1;   // of pitch: roll is lost at a right angle
 
 constexpr std::array kRollNames = std::to_array<std::string_view>({"roll", "phi", "heel"});
 constexpr std::array kPitchNames = std::to_array<std::string_view>({"pitch", "theta", "trim"});
@@ -63,7 +63,7 @@ void find_angle(std::string_view name, std::size_t input, bool degrees, Attitude
     return;
   }
   std::string word = text.substr(last + 1);
-  const double unit = remove_ending(word, kDegreeEndings) || degrees ? kDegree : 1.0;
+  const double unit = remove_ending(word, kDegreeEndings) || degrees ? kRadPerDegree : 1.0;
   remove_ending(word, kAngleEndings);
   if (std::ranges::find(kHeadingNames, word) != kHeadingNames.end()) {
     found.headings.push_back(input);
@@ -187,7 +187,7 @@ AngleUnit unit_of_angles(const Attitude& attitude, std::span<const double> large
     return (!attitude.pitch || largest[*attitude.pitch] <= kRounding * pitch) &&
            (!attitude.roll || largest[*attitude.roll] <= kRounding * roll);
   };
-  if (within(std::numbers::pi / 2.0, 2.0 * std::numbers::pi)) {
+  if (within(std::numbers::pi / 2.0, kFullTurn)) {
     return AngleUnit::radians;
   }
   return within(90.0, 360.0) ? AngleUnit::degrees : AngleUnit::none;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/quantile.hpp"
 #include "motion/tuning.hpp"
 
 namespace kelpie {
@@ -128,7 +129,7 @@ void CoefficientMonitor::update_health() {
 
 void CoefficientMonitor::joint_shares(double scatter, std::vector<Cause>& shares) const {
   shares.clear();
-  const double spread = kZ90 * std::sqrt(scatter);
+  const double spread = kNormal90 * std::sqrt(scatter);
   const Agreement agreement = comparison_.of(health_columns_);
   for (std::size_t i = 0; i < terms_.commands().size(); ++i) {
     shares.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));

@@ -8,6 +8,7 @@
 
 #include "core/eigen.hpp"
 #include "core/normal_equations.hpp"
+#include "core/quantile.hpp"
 #include "motion/cause_ranking.hpp"
 #include "motion/coefficient_monitor.hpp"
 #include "motion/standstill.hpp"
@@ -20,9 +21,7 @@ void visit_finding(Archive& archive, Finding& finding) {
   for (double* const time : {&finding.since_s, &finding.found_s, &finding.told_s}) {
     archive.number(*time);
   }
-  auto state = static_cast<std::size_t>(finding.state);
-  archive.whole(state, 0, kFindingStates - 1);
-  finding.state = static_cast<FindingState>(state);
+  archive.choice(finding.state, FindingState::looking, FindingState::none);
   archive.flag(finding.settled);
   archive.whole(finding.count, 0, finding.causes.size());
   for (Cause& cause : finding.causes) {
@@ -280,7 +279,8 @@ void Diagnosis::State::report(Finding& finding, const CauseRanking& ranking, dou
     const double size = choice.agreement.size[column];
     const double scatter = std::sqrt(ranking.dispersion) * choice.agreement.error[column];
     const double left_out = (added ? kDiagnosis.added_discrepancy : kDiagnosis.discrepancy) * size;
-    return monitor_.explanations().cause(explanation, size, kZ90 * std::hypot(scatter, left_out));
+    return monitor_.explanations().cause(explanation, size,
+                                         kNormal90 * std::hypot(scatter, left_out));
   };
   if (finding.state != ranking.state) {
     finding.state = ranking.state;
@@ -383,7 +383,7 @@ void Diagnosis::State::half_widths(std::span<const double> x, std::span<double> 
   }
   for (std::size_t i = 0; i < widths.size(); ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    const double own = kZ90 * std::sqrt(std::max(noise(axis, axis) * scatter, 0.0));
+    const double own = kNormal90 * std::sqrt(std::max(noise(axis, axis) * scatter, 0.0));
     widths[i] = std::hypot(own, share_width * theta.col(axis).dot(phi));
   }
 }

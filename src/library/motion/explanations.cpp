@@ -254,9 +254,7 @@ Cause Explanations::cause(std::size_t explanation, double s, double reach) const
 }
 
 void visit_cause(Archive& archive, Cause& cause) {
-  auto kind = static_cast<std::size_t>(cause.kind);
-  archive.whole(kind, 0, kCauseKinds - 1);
-  cause.kind = static_cast<CauseKind>(kind);
+  archive.choice(cause.kind, CauseKind::thruster, CauseKind::frozen);
   archive.whole(cause.place, 0, kMostInputs - 1);
   for (double* const number : {&cause.size, &cause.lower, &cause.upper}) {
     archive.any_number(*number);

@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "core/quantile.hpp"
 #include "kelpie/core/archive.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 #include "motion/motion_terms.hpp"
 
 namespace kelpie {
 
-inline constexpr std::size_t kMostColumns = 24;     ///< of one Agreement
-inline constexpr double kZ90 = 1.6448536269514722;  ///< normal quantile of a 90 % interval
+inline constexpr std::size_t kMostColumns = 24;  ///< of one Agreement
 
 /// The effect of a cause on the coefficients Θ (terms × axes) of the equations of motion: one
 /// direction per column, ΔΘ = Σ s_c D_c(Θ).

@@ -90,8 +90,7 @@ inline constexpr struct IdentificationTuning {
   std::array<double, 5> half_windows_s{0.5, 0.25, 1.0, 2.0, 4.0};  ///< [s] tried
   double stride_share = 0.4;  ///< [half a window] between windows
   long pieces = 24;           ///< of the log, whose scores count as independent
-  double student90 = 1.714;  ///< quantile 0.95 of Student's t with pieces − 1 degrees of freedom,
-  double normal90 = 1.645;   ///< and of the normal distribution
+  double student90 = 1.714;   ///< quantile 0.95 of Student's t with pieces − 1 degrees of freedom
   double velocity_scale = 0.002;     ///< [share] data sheets of DVLs, ±0.2 %
   double velocity_bias_m_s = 0.001;  ///< [m/s] data sheets of DVLs, ±1 mm/s
   double attitude_bias_rad = 0.001;  ///< [rad] of roll and pitch, by hand

@@ -5,9 +5,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <numbers>
 #include <span>
 
+#include "core/angle.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "motion/text_scanner.hpp"
@@ -24,7 +24,6 @@ struct Conversion {
   std::string_view si;
   double factor;  // one such unit in units of the SI
 };
-constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kKnot = 1852.0 / 3600.0;
 constexpr std::array kMotion = std::to_array<Conversion>({{"deg", "rad", kRadPerDegree},
                                                           {"°", "rad", kRadPerDegree},

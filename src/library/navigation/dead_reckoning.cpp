@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "kelpie/core/error.hpp"
 #include "navigation/practice.hpp"
 #include "navigation/tuning.hpp"
@@ -352,7 +352,7 @@ void DeadReckoning::measured_heading(double heading, double deviation) {
   for (auto& [filter, practice] : state_->hypotheses) {
     const double now = filter.mean()(filter.heading());
     VelocityFilter::Vector value(1);
-    value(0) = now + std::remainder(heading - now, 2.0 * std::numbers::pi);
+    value(0) = now + wrapped(heading - now);
     filter.correct(std::array<Index, 1>{filter.heading()}, value, noise);
   }
 }

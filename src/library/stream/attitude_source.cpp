@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "core/angle.hpp"
 
 namespace kelpie {
 
@@ -32,8 +33,7 @@ std::array<double, 4> AttitudeSource::at(std::span<const SignalHistory> signals,
       share = (t - begin_s) / (signal.time_s(after) - begin_s);
     }
     if (!is_quaternion()) {
-      before[i] =
-          unit_ * before[i] + share * std::remainder(unit_ * step[i], 2.0 * std::numbers::pi);
+      before[i] = unit_ * before[i] + share * wrapped(unit_ * step[i]);
       step[i] = 0.0;
     }
   }

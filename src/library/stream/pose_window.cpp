@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "core/angle.hpp"
 #include "stream/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTurn = 2.0 * std::numbers::pi;
 // (1 − s²)³ (a + b s²) with integral 1 and second moment 0.
 constexpr double kConstant = 945.0 / 512.0;
 constexpr double kSquare = -3465.0 / 512.0;
@@ -153,7 +152,7 @@ void PoseWindow::add_angle(std::span<const SignalHistory> signals, std::size_t p
     return is_quaternion ? attitude_.angles(signals, signal.time_s(i))[part] : signal.value(i);
   };
   add(signal, [&](std::size_t i, double middle_s) {
-    const double turn = std::remainder(angle(i + 1) - angle(i), kTurn);
+    const double turn = wrapped(angle(i + 1) - angle(i));
     const auto [roll, pitch, yaw] = attitude_.angles(signals, middle_s);
     Motion way{};
     if (part == 0) {
@@ -244,9 +243,9 @@ double PoseWindow::mean_angle(const SignalHistory& signal) const {
   }
   // Around the angle in the middle, so that the jump from π to −π lies far away.
   const double middle = signal.value(after - 1);
-  const double mean = mean_of(signal, Interpolation::line,
-                              [&](double angle) { return std::remainder(angle - middle, kTurn); });
-  return std::remainder(middle + mean, kTurn);
+  const double mean =
+      mean_of(signal, Interpolation::line, [&](double angle) { return wrapped(angle - middle); });
+  return wrapped(middle + mean);
 }
 
 }  // namespace kelpie

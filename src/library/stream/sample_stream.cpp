@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "kelpie/core/error.hpp"
 #include "stream/attitude_source.hpp"
 #include "stream/derivative.hpp"
@@ -25,7 +25,6 @@ constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr double kAlways = std::numeric_limits<double>::infinity();
 constexpr double kFarthestRow = 4503599627370496.0;  // 2^52: rows are counted in doubles
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::size_t most_kept(const StreamPlan& plan) {
   std::size_t most = 0;
@@ -434,7 +433,7 @@ void SampleStream::State::use_turns() {
     for (const std::string& name : vector.attitude) {
       attitude.push_back(plan_.source(name));
     }
-    const double unit = vector.is_in_degrees ? kDegree : 1.0;
+    const double unit = vector.is_in_degrees ? kRadPerDegree : 1.0;
     Turn& turn = turns_.emplace_back(
         Turn{.attitude = {std::move(attitude), unit, true}, .from = vector.from, .to = vector.to});
     for (std::size_t part = 0; part < 3; ++part) {

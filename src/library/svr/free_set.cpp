@@ -134,11 +134,8 @@ void FreeSet::visit(Archive& archive, std::size_t samples) {
       place_[sample] = static_cast<std::ptrdiff_t>(place++);
     }
   });
-  archive.list(branch_, size(), [&](Branch& branch) {
-    auto sign = static_cast<int>(branch);
-    archive.whole(sign, -1, 1);
-    branch = static_cast<Branch>(sign);
-  });
+  archive.list(branch_, size(),
+               [&](Branch& branch) { archive.choice(branch, Branch::negative, Branch::positive); });
   archive.require(branch_.size() == size(), "has members without a branch");
   for (std::size_t j = 0; j < size(); ++j) {
     archive.numbers(column(j));

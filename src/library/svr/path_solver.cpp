@@ -207,7 +207,7 @@ PathSolver::End PathSolver::empty(DualProblem& problem, std::size_t c, Budget& b
     if (move_.free().size() > 0) {
       step(problem, head);
     } else if (!shift_bias(problem, head)) {
-      problem.set_beta(c, 0.0);  // nobody can take it over: it is rounding
+      problem.set_beta(c, 0.0);  // no other sample can take it over: rounding
     }
   }
   return End::reached;
@@ -260,7 +260,7 @@ bool PathSolver::step(DualProblem& problem, const Head& head) {
   return true;
 }
 
-// With no free sample b is not unique: it moves to where c's line holds, or somebody else's weight
+// With no free sample b is not unique: it moves to where c's line holds, or another sample's weight
 // may begin to move the other way and so make room for c's. False when neither can be.
 bool PathSolver::shift_bias(DualProblem& problem, const Head& head) {
   move_.refresh(problem);

@@ -95,13 +95,10 @@ class Draft {
   }
 
   void write(std::string_view content) {
-    while (!content.empty()) {
-      const ssize_t written = ::write(file_->number(), content.data(), content.size());
-      if (written < 0 && errno != EINTR) {
-        fail(place_, errno);
-      }
-      content.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+    if (!file_->write(content, size_)) {
+      fail(place_, errno);
     }
+    size_ += content.size();
   }
 
   void finish() {
@@ -114,6 +111,7 @@ class Draft {
   fs::path place_;
   fs::path path_;  // empty once published
   std::optional<Descriptor> file_;
+  std::size_t size_ = 0;
 };
 
 // A rename survives a power cut only once its folder is synced. The new content is in place by

@@ -15,6 +15,20 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+bool Descriptor::write(std::string_view content, std::size_t begin) const {
+  while (!content.empty()) {
+    const ssize_t written =
+        ::pwrite(number_, content.data(), content.size(), static_cast<off_t>(begin));
+    if (written < 0 && errno != EINTR) {
+      return false;
+    }
+    const std::size_t done = written > 0 ? static_cast<std::size_t>(written) : 0;
+    content.remove_prefix(done);
+    begin += done;
+  }
+  return true;
+}
+
 FolderLock::FolderLock(const std::filesystem::path& file)
     : folder_(folder_of(file), O_RDONLY | O_DIRECTORY) {
   if (folder_.is_open()) {

@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <filesystem>
+#include <string_view>
 
 namespace kelpie::file {
 
@@ -37,6 +39,10 @@ class Descriptor {
     }
     return failed == 0;
   }
+
+  /// Writes all of `content` from the byte `begin` on. Returns false with the reason in errno where
+  /// the file takes no more.
+  bool write(std::string_view content, std::size_t begin) const;
 
  private:
   int number_;

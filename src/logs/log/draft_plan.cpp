@@ -8,11 +8,11 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <string_view>
 
+#include "core/angle.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "log/ardusub.hpp"
@@ -216,7 +216,6 @@ struct UnitFactor {
   double factor;
   const char* si;
 };
-constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr std::array kFactors = std::to_array<UnitFactor>({{"deg", kRadPerDegree, "rad"},
                                                            {"deg/s", kRadPerDegree, "rad/s"},
                                                            {"cm/s", 0.01, "m/s"},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/log_config.hpp"
+#include "core/angle.hpp"
 #include "log/ardusub.hpp"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <functional>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -57,7 +57,6 @@ Frame frame_of(const file::TomlNode& value) {
   throw InputError({.file = config.source, .field = key}, message);
 }
 
-constexpr double kRadInADegree = std::numbers::pi / 180.0;
 constexpr std::array<const char*, 10> kPoseParts{"x",   "y",  "z",  "roll", "pitch",
                                                  "yaw", "qw", "qx", "qy",   "qz"};
 
@@ -250,7 +249,7 @@ class LogConfigReader {
     pose.attitude = has_quaternion ? quaternion : has_angles ? angles : pose.attitude;
     for (SamplingPlan::Source& source : plan().sources) {
       if (parts.is_in_degrees && std::ranges::count(angles, source.name) > 0) {
-        source.scale *= kRadInADegree;
+        source.scale *= kRadPerDegree;
       }
     }
     return pose;

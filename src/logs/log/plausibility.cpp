@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
@@ -31,11 +31,10 @@ struct KnownFactor {
   const char* options;  // for --units
 };
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kGravity = 9.80665;
 constexpr std::array kUnits = std::to_array<KnownFactor>({
-    {kDegree, "{0} is in degrees per second, {1} in rad/s²", "{0}=deg/s"},
-    {1.0 / kDegree, "{1} is in degrees per second squared, {0} in rad/s", "{1}=deg/s^2"},
+    {kRadPerDegree, "{0} is in degrees per second, {1} in rad/s²", "{0}=deg/s"},
+    {1.0 / kRadPerDegree, "{1} is in degrees per second squared, {0} in rad/s", "{1}=deg/s^2"},
     {0.01, "{0} is in cm/s, {1} in m/s²", "{0}=cm/s"},
     {100.0, "{1} is in cm/s², {0} in m/s", "{1}=cm/s^2"},
     {1e-3, "{0} is in mm/s, {1} in m/s²", "{0}=mm/s"},

@@ -213,11 +213,13 @@ study::StreamResult learn_with_progress(const LearnArguments& options, const stu
     });
   };
   stream.resume = earlier.stream;
+  return study::learn(plan, model, stream);
+}
+
+// The model as the checkpoint of the earlier run has it.
+DynamicsModel resumed_model(DynamicsModel fresh, const format::RunState& earlier) {
   try {
-    if (!earlier.model.empty()) {
-      model = DynamicsModel::resume(std::move(model), earlier.model);
-    }
-    return study::learn(plan, model, stream);
+    return DynamicsModel::resume(std::move(fresh), earlier.model);
   } catch (const InputError& error) {
     throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
   }
@@ -349,8 +351,14 @@ void learn(const LearnArguments& options) {
   const format::RunState earlier =
       options.resume ? earlier_run(options.out, identity) : format::RunState{};
   DynamicsModel model = first_model(options, from, plan, !earlier.model.empty());
+  if (!earlier.model.empty()) {
+    model = resumed_model(std::move(model), earlier);
+  }
   const std::vector<format::LearnedLog> learned = all_learned(options, from, log.learned);
   const study::StreamResult result = learn_with_progress(options, plan, model, earlier, identity);
+  if (!model.ready() && !result.interrupted) {
+    refuse_without_model(plan);
+  }
   std::vector<report::NextStep> next;
   if (model.ready() && report::is_poor(result)) {
     next = report::after_poor_model(options.log.source.path, options.text(options.config));
@@ -363,9 +371,6 @@ void learn(const LearnArguments& options) {
                     result.interrupted ? std::vector<format::LearnedLog>{} : learned, log, next);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
-  }
-  if (!model.ready() && !result.interrupted) {
-    refuse_without_model(plan);
   }
   give(answer_of(options, result, has_model, !log.draft.empty(), next), options.answer);
 }

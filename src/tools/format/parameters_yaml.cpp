@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/quantile.hpp"
 #include "file/json.hpp"
 #include "format/parameters.hpp"
 
@@ -136,7 +137,6 @@ const char* state_word(ParameterState state) {
 }
 
 double half_width90(const FittedParameter& parameter) {
-  constexpr double kNormal90 = 1.645;
   return kNormal90 * parameter.error;
 }
 

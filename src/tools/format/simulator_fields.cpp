@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "core/angle.hpp"
 #include "vehicle/engine.hpp"
 
 namespace kelpie::format {
@@ -16,7 +17,6 @@ constexpr double kFreshWater = 1000.0;      // kg/m³
 constexpr double kUuvSeaWater = 1028.0;     // kg/m³, the default of UUV Simulator
 constexpr double kOrcaWater = 997.0;        // kg/m³, the default of orca4
 constexpr double kPropellerDiameter = 0.1;  // m; only its product with the coefficient counts
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kPerRadians = 1.0 / (4.0 * std::numbers::pi * std::numbers::pi);  // of (rev/s)²
 
 void add(Fields& fields, const char* name, const std::string& value) {
@@ -179,7 +179,7 @@ Fields thruster_fields(const IdentifiedVehicle& vehicle, const IdentifiedThruste
   const double per_square = vehicle.speeds ? kPerRadians : 1.0;
   add(fields, "forward", thruster.forward * per_square);
   add(fields, "reverse", thruster.reverse * per_square);
-  add(fields, "greatest", vehicle.speeds ? greatest * kTurn : greatest);
+  add(fields, "greatest", vehicle.speeds ? greatest * kFullTurn : greatest);
   add(fields, "per", vehicle.speeds ? "N/(rad/s)^2" : "N at full command");
   add(fields, "most_thrust", thruster.forward * greatest * greatest);
   add(fields, "least_thrust", -thruster.reverse * greatest * greatest);

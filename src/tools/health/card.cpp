@@ -13,6 +13,7 @@
 #include <regex>
 #include <utility>
 
+#include "core/quantile.hpp"
 #include "health/tuning.hpp"
 #include "kelpie/core/error.hpp"
 

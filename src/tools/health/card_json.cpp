@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "health/card_json.hpp"
+#include "core/quantile.hpp"
 
 #include "file/json.hpp"
 #include "health/tuning.hpp"

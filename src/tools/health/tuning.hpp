@@ -29,6 +29,4 @@ inline constexpr struct Tuning {
   double surface_share = 0.1;  ///< of the greatest depth: between dives
 } kTuning;
 
-inline constexpr double kNormal90 = 1.645;  ///< half a 90 % interval over the standard error
-
 }  // namespace kelpie::health

@@ -248,15 +248,15 @@ void Journal::put_on_disk() {
 }
 
 JournalReader::Line Journal::append(const std::string& line) {
-  const auto begin = static_cast<off_t>(size_);
-  if (::pwrite(descriptor_.number(), line.data(), line.size(), begin) !=
-      static_cast<ssize_t>(line.size())) {
+  const std::size_t begin = size_;
+  if (!descriptor_.write(line, begin)) {
     const std::string why = reason();
-    [[maybe_unused]] const int ignored = ::ftruncate(descriptor_.number(), begin);
+    [[maybe_unused]] const int ignored =
+        ::ftruncate(descriptor_.number(), static_cast<off_t>(begin));
     throw Failure(fmt::format("{}: cannot be written: {}", file_.string(), why));
   }
   size_ += line.size();
-  return {static_cast<std::uint64_t>(begin), line.size() - 1};
+  return {begin, line.size() - 1};
 }
 
 void JournalReader::refuse(std::size_t line, std::string_view field, const std::string& why) const {

@@ -11,6 +11,7 @@
 #include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "core/quantile.hpp"
 #include "health/tuning.hpp"
 
 namespace kelpie::report {
@@ -72,7 +73,7 @@ std::string value_text(const health::Quantity& quantity, const Estimate& estimat
     return "–";
   }
   const double scale = quantity.unit.empty() ? 100.0 : 1.0;
-  const double half = scale * health::kNormal90 * estimate.error;
+  const double half = scale * kNormal90 * estimate.error;
   const int places = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6);
   return fmt::format("{:.{}f} ± {:.{}f}", scale * estimate.value, places, half, places);
 }
@@ -142,7 +143,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
   for (std::size_t i = 0; i < series.days.size(); ++i) {
     const double x = series.days[i] - first;
     points.push_back({x, scale * series.estimates[i].value});
-    halves.push_back(scale * health::kNormal90 * series.estimates[i].error);
+    halves.push_back(scale * kNormal90 * series.estimates[i].error);
     course.push_back({x, scale * course_at(change.course, series.days[i])});
   }
   chart::Figure figure(

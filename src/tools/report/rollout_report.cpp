@@ -13,6 +13,7 @@
 #include "chart/figure.hpp"
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
+#include "core/quantile.hpp"
 #include "core/text.hpp"
 
 namespace kelpie::report {
@@ -119,7 +120,6 @@ std::vector<chart::TextTable> rollout_tables(const study::OpenLoopResult& result
 namespace {
 
 constexpr double kLowestDrawn = 0.5;
-constexpr double kNinetyPercent = 1.645;
 
 constexpr double kHeadlineS = 10.0;
 
@@ -214,7 +214,7 @@ std::string example_figure(const study::OpenLoopResult& result, std::size_t stat
   for (std::size_t row = 0; row < path.time_s.size(); ++row) {
     measured.push_back({path.time_s[row], path.measured[state][row]});
     velocity.push_back({path.time_s[row], path.velocity[state][row]});
-    half.push_back(kNinetyPercent * path.spread[state][row]);
+    half.push_back(kNormal90 * path.spread[state][row]);
   }
   chart::Figure figure({"time after the start in s"},
                        {result.states[state] + " in " + unit_of(result, state)},

@@ -4,11 +4,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/eigen.hpp"
+#include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/tuning.hpp"
@@ -208,7 +209,7 @@ bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<PlanarMot
       farthest_m = std::max(farthest_m, std::hypot(motion.x_m, motion.y_m));
       fastest_m_s = std::max(fastest_m_s, std::hypot(motion.velocity[0], motion.velocity[1]));
       if (!(farthest_m <= bounds_.radius_m && fastest_m_s <= bounds_.speed_m_s &&
-            std::abs(motion.velocity[2]) < 2.0 * std::numbers::pi * kMostTurnsPerS)) {
+            std::abs(motion.velocity[2]) < kFullTurn * kMostTurnsPerS)) {
         return false;
       }
     }
@@ -290,7 +291,7 @@ double interval_share(const PlanarFit& fit, std::size_t place) {
                           ? std::sqrt(std::abs(fit.parameters[PlanarPlace::sway_inertia].value *
                                                fit.parameters[PlanarPlace::yaw_inertia].value))
                           : std::abs(parameter.value);
-  return kIdentification.normal90 * parameter.error / std::max(size, 1e-12);
+  return kNormal90 * parameter.error / std::max(size, 1e-12);
 }
 
 DriveGoal telling_goal(const ExpectedPlanarFit& expected, std::vector<std::size_t> parameters,

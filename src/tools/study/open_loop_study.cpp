@@ -17,8 +17,6 @@
 namespace kelpie::study {
 namespace {
 
-constexpr double kNinetyPercent = 1.645;
-
 double step_after(const log::Dataset& data, std::size_t row) {
   return data.times_s[row + 1] - data.times_s[row];
 }
@@ -32,7 +30,7 @@ struct Ends {
   void add(double is, double said, double spread) {
     truth.push_back(is);
     predicted.push_back(said);
-    covered += std::abs(is - said) <= kNinetyPercent * spread ? 1 : 0;
+    covered += std::abs(is - said) <= kNormal90 * spread ? 1 : 0;
   }
 };
 

@@ -46,7 +46,7 @@ class Voyage {
   }
 
   AdaptiveSvr& learner() { return learner_; }
-  std::span<const PastModel> models() const { return learner_.memory().models(); }
+  std::span<const PastModel> models() const { return learner_.past_models().models(); }
 
  private:
   AdaptiveSvr learner_;
@@ -57,7 +57,7 @@ class Voyage {
 TEST(PastModels, GoesFromStateToState) {
   using State = PastModels::State;
   Voyage voyage;
-  const PastModels& memory = voyage.learner().memory();
+  const PastModels& memory = voyage.learner().past_models();
   EXPECT_EQ(memory.state(), State::settling);
   voyage.drive(0, 1000);
   EXPECT_EQ(memory.state(), State::watching);
@@ -181,7 +181,7 @@ TEST(PastModels, GradualDriftRecallsNothing) {
     const double y = (1.0 - share) * respond(0, a, b) + share * respond(1, a, b);
     ASSERT_EQ(learner.update(places[i].z, y, places[i].t).recalled, 0) << "sample " << i;
   }
-  EXPECT_FALSE(learner.memory().models().empty());  // else there is nothing to recall
+  EXPECT_FALSE(learner.past_models().models().empty());  // else there is nothing to recall
 }
 
 TEST(PastModels, TheSameVehicleIsKeptOnce) {
@@ -190,7 +190,7 @@ TEST(PastModels, TheSameVehicleIsKeptOnce) {
     for (const Sample& sample : wandering_stream(seed, 4000, 0.1)) {
       ASSERT_EQ(learner.update(sample.z, sample.y, sample.t).recalled, 0) << seed;
     }
-    EXPECT_EQ(learner.memory().models().size(), 1U) << seed;
+    EXPECT_EQ(learner.past_models().models().size(), 1U) << seed;
   }
 }
 

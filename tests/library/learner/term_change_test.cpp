@@ -103,9 +103,9 @@ TEST(ShiftedSvr, KeepsPastModelsOfBothVehicles) {
   for (const Sample& sample : with_terms(wandering_stream(5, 800, 0.02, 0, 300.0), true)) {
     learner.update(sample.z, sample.y, sample.t);
   }
-  ASSERT_EQ(learner.memory().models().size(), 2U);
+  ASSERT_EQ(learner.past_models().models().size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {
-    const PastModel& past = learner.memory().models()[k];
+    const PastModel& past = learner.past_models().models()[k];
     double error = 0.0;
     double target_error = 0.0;
     std::vector<double> z(4);

@@ -117,7 +117,7 @@ TEST(RealTime, PastModelsFollowAScaleUnseen) {
       }
       ASSERT_NEAR(now.info.usual_error, before.info.usual_error, 1e-9) << i;
       const AdaptiveSvr& learner = model.mechanisms(1).svr();
-      on_the_way = on_the_way || learner.rescaled() < learner.memory().models().size();
+      on_the_way = on_the_way || learner.rescaled() < learner.past_models().models().size();
     }
   }
   EXPECT_TRUE(on_the_way);

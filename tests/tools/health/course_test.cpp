@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/quantile.hpp"
 #include "health/card.hpp"
 #include "health/tuning.hpp"
 #include "kelpie/core/error.hpp"
@@ -62,7 +63,7 @@ TEST(Course, ADriftIsToldFromAStepWithSizeRateAndBeginning) {
     EXPECT_LE(drift.since_low, 63.0);
     EXPECT_GE(drift.since_high, 42.0);
     EXPECT_NEAR(drift.rate.value, 0.01 / 7.0, 4.0 * drift.rate.error);
-    inside += std::abs(drift.change.value - 0.11) < health::kNormal90 * drift.change.error ? 1 : 0;
+    inside += std::abs(drift.change.value - 0.11) < kNormal90 * drift.change.error ? 1 : 0;
     const Course step =
         health::judge(weekly(20, random, [](double day) { return day > 60.0 ? 1.05 : 1.0; }));
     EXPECT_EQ(step.kind, CourseKind::step);
