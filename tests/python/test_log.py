@@ -195,3 +195,61 @@ def test_fit_warns_of_a_log_that_cannot_be_right(mistake, rate, words):
         kelpie.DynamicsModel(**small).fit(frame)
     with pytest.warns(kelpie.PlausibilityWarning, match=re.escape(words)):
         kelpie.DynamicsModel(**small, rate=rate).fit(mistake(frame))
+
+
+def drive(seconds, step=0.01):
+    """t, pose and commands of u' = n|n| - 0.5 u - 0.8 u|u| + v r, v' = -0.9 v - u r,
+    r' = 0.6 m - 0.7 r, at 10 Hz."""
+    random = np.random.default_rng(3)
+    wishes = random.uniform(-1.0, 1.0, (int(seconds / 4.0) + 1, 2))
+    u = v = r = x = y = psi = 0.0
+    rows = []
+    for k in range(int(seconds / step)):
+        n, m = wishes[int(k * step / 4.0)]
+        if k % round(0.1 / step) == 0:
+            rows.append((k * step, x, y, psi, n, m))
+        x += step * (u * np.cos(psi) - v * np.sin(psi))
+        y += step * (u * np.sin(psi) + v * np.cos(psi))
+        psi += step * r
+        u, v, r = (u + step * (n * abs(n) - 0.5 * u - 0.8 * u * abs(u) + v * r),
+                   v + step * (-0.9 * v - u * r), r + step * (0.6 * m - 0.7 * r))
+    rows = np.array(rows)
+    rows[:, 1:3] += 0.01 * random.standard_normal((len(rows), 2))
+    return rows
+
+
+def test_poses_are_learned_without_a_velocity_in_the_log(tmp_path):
+    np.savetxt(tmp_path / "log.csv", drive(600.0), delimiter=",", comments="",
+               header="t,x,y,psi,n,m")
+    inputs = ["u", "v", "r", "n", "m"]
+    log = kelpie.read_log(tmp_path / "log.csv", pose=["x", "y", "psi"], inputs=inputs, rate=5.0,
+                          frame=False)
+    assert log.attrs["targets"] == ["udot", "vdot", "rdot"]
+    (tmp_path / "log.toml").write_text(
+        "[log]\ntime = 't'\nrate = 5\npose = {x = 'x', y = 'y', yaw = 'psi'}\n"
+        "commands = {n = 'n', m = 'm'}\n")
+    same = kelpie.read_log(tmp_path / "log.csv", tmp_path / "log.toml", frame=False)
+    for name in [*inputs, *log.attrs["targets"]]:
+        assert np.array_equal(same[name], log[name], equal_nan=True), name
+    X = np.column_stack([log[name] for name in inputs])
+    Y = np.column_stack([log[name] for name in log.attrs["targets"]])
+    whole = np.isfinite(X).all(axis=1) & np.isfinite(Y).all(axis=1)
+    X, Y = X[whole], Y[whole]
+    # The yaw equation is linear and holds for the means of a window.
+    found = np.linalg.lstsq(X[:, [4, 2]], Y[:, 2], rcond=None)[0]
+    assert found == pytest.approx([0.6, -0.7], rel=0.05)
+    first = slice(0, 2000)
+    model = kelpie.DynamicsModel(inputs=inputs, rate=5.0, buffer=100)
+    model.fit(X[first], Y[first])
+    left = Y[2000:] - model.predict(X[2000:])
+    r2 = 1.0 - (left**2).sum(axis=0) / ((Y[2000:] - Y[2000:].mean(axis=0))**2).sum(axis=0)
+    assert r2.min() > 0.8, r2
+
+
+def test_poses_that_cannot_be_are_named(tmp_path):
+    np.savetxt(tmp_path / "log.csv", drive(20.0), delimiter=",", comments="",
+               header="t,x,y,psi,n,m")
+    with pytest.raises(ValueError, match="x and y belong together"):
+        kelpie.read_log(tmp_path / "log.csv", pose=["x", "psi"], inputs=["u", "n", "m"])
+    with pytest.raises(ValueError, match="neither config nor columns"):
+        kelpie.read_log(tmp_path / "log.csv", tmp_path / "log.toml", pose=["x"])

@@ -9,6 +9,13 @@
 
 namespace kelpie {
 
+Triple roll_pitch_yaw(const std::array<double, 4>& quaternion) {
+  const Triple x = in_body(Triple{1.0, 0.0, 0.0}, quaternion);  // the first row of R
+  const Triple y = in_body(Triple{0.0, 1.0, 0.0}, quaternion);
+  const Triple z = in_body(Triple{0.0, 0.0, 1.0}, quaternion);
+  return {std::atan2(z[1], z[2]), std::asin(std::clamp(-z[0], -1.0, 1.0)), std::atan2(y[0], x[0])};
+}
+
 AttitudeSource::AttitudeSource(std::vector<std::size_t> places, double unit, bool by_stamps)
     : places_(std::move(places)), unit_(unit), by_stamps_(by_stamps) {}
 
@@ -60,13 +67,7 @@ Triple AttitudeSource::in_body(std::span<const SignalHistory> signals, const Tri
 
 Triple AttitudeSource::angles(std::span<const SignalHistory> signals, double time_s) const {
   const std::array<double, 4> now = at(signals, time_s);
-  if (!is_quaternion()) {
-    return {now[0], now[1], now[2]};
-  }
-  const Triple x = kelpie::in_body(Triple{1.0, 0.0, 0.0}, now);  // the first row of R
-  const Triple y = kelpie::in_body(Triple{0.0, 1.0, 0.0}, now);
-  const Triple z = kelpie::in_body(Triple{0.0, 0.0, 1.0}, now);
-  return {std::atan2(z[1], z[2]), std::asin(std::clamp(-z[0], -1.0, 1.0)), std::atan2(y[0], x[0])};
+  return is_quaternion() ? roll_pitch_yaw(now) : Triple{now[0], now[1], now[2]};
 }
 
 }  // namespace kelpie

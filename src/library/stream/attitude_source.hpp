@@ -11,6 +11,9 @@
 
 namespace kelpie {
 
+/// Roll, pitch and yaw [rad] of a quaternion w, x, y, z, as in_body() takes both.
+Triple roll_pitch_yaw(const std::array<double, 4>& quaternion);
+
 /// The attitude of the vehicle between the samples of its sources: angles go the short way round,
 /// quaternions too.
 class AttitudeSource {

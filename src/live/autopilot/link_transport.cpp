@@ -360,6 +360,11 @@ std::vector<std::string> LinkTransport::check() {
 std::unique_ptr<live::Transport> open_link(const live::Configuration& configuration,
                                            const file::TomlNode& table) {
   const LinkSettings settings = read_link_settings(table);
+  if (configuration.plan.pose && settings.velocity != VelocityMessage::none) {
+    table["velocity"].refuse(
+        "tells measured velocities to the autopilot; from a pose a velocity is known half a window "
+        "late, and reckoned until then, so leave it out or take \"none\"");
+  }
   std::unique_ptr<ByteLine> line;
   try {
     line = open_line(settings.connection);

@@ -295,6 +295,11 @@ void say_plan(const live::Configuration& configuration,
   const StreamPlan& plan = configuration.plan;
   say("inputs:  {}\ntargets: {}\nrate:    {} rows/s\n", join_text(plan.inputs, ", "),
       join_text(plan.targets, ", "), plan.rate_hz);
+  if (plan.pose) {
+    say("poses:   rows come {:.3g} s late, half of the window; until then velocities are "
+        "reckoned\n",
+        plan.pose->half_s);
+  }
   for (const StreamPlan::Source& source : plan.sources) {
     say("{}: {}\n", source.name, source.from);
   }

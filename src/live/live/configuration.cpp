@@ -182,17 +182,19 @@ auto in_file(const std::string& file, Function function) {
   }
 }
 
+// Samples per signal: the window of a pose is longer than that of a derivative.
+std::size_t history_of(const StreamPlan& plan) {
+  const double window_s = plan.pose ? 2.0 * plan.pose->half_s + plan.gap_s + plan.wait_s : 0.0;
+  return std::max(kTuning.history,
+                  static_cast<std::size_t>(std::min(window_s * kTuning.pose_rate_hz,
+                                                    static_cast<double>(kTuning.most_history))));
+}
+
 StreamPlan plan_of(const log::LogConfig& config) {
   if (!config.makes_samples()) {
     throw InputError({.file = config.source, .line = 0, .field = "log"},
                      "names no topics; it takes [log.states] and [log.commands], as in u = "
                      "\"/odom:twist.twist.linear.x\"");
-  }
-  if (config.plan.pose) {
-    throw InputError({.file = config.source, .line = 0, .field = "log.pose"},
-                     "makes no live rows: a velocity from poses is known half a window late, too "
-                     "late to predict from. Learn the recording by `kelpie learn`; live rows take "
-                     "velocities in [log.states]");
   }
   if (!config.roles.time.empty()) {
     throw InputError({.file = config.source, .line = 0, .field = "log.time"},
@@ -201,7 +203,7 @@ StreamPlan plan_of(const log::LogConfig& config) {
   return in_file(config.source, [&] {
     StreamPlan plan = log::stream_plan(config, config.roles);
     for (StreamPlan::Source& source : plan.sources) {
-      source.keep = kTuning.history;
+      source.keep = history_of(plan);
       try {
         bag::parse_column(source.from);
       } catch (const InputError& error) {
@@ -294,6 +296,10 @@ Fields Configuration::identity() const {
                       plan.lever_arm->arm_m[1], plan.lever_arm->arm_m[2]);
   }
   fields.emplace_back("log.lever_arm", arm);
+  if (plan.pose) {
+    fields.emplace_back("log.pose", join_text(plan.pose->sources(), ", "));
+    fields.back().second += fmt::format(" over {} s", number_text(2.0 * plan.pose->half_s));
+  }
   for (const auto& [column, unit] : rows ? rows->units : std::map<std::string, Unit>{}) {
     fields.emplace_back("log.units." + column, unit.text());
   }

@@ -159,6 +159,8 @@ void Engine::forward_rows() {
       continue;
     }
     ++rows_;
+    row_late_s_ = has_ended_ ? row_late_s_ : receiver_.now_s() - row->t;
+    reckoning_.take_row(*row, receiver_);
     if (!row->is_whole) {
       ++rows_incomplete_;
       continue;
@@ -208,11 +210,12 @@ void Engine::forward_request() {
 void Engine::predict() {
   commands_.use(learner_.alignment());
   const std::optional<std::int64_t>& origin_ns = receiver_.origin_ns();
-  if (!origin_ns || !receiver_.newest(commands_.shifts_s(), x_now_)) {
+  if (!origin_ns || !receiver_.inputs_at(receiver_.now_s(), commands_.shifts_s(), x_now_,
+                                         reckoning_.late_inputs())) {
     return;
   }
   commands_.act(x_now_, receiver_.now_s());
-  if (learner_.model()->predict(x_now_, predictions_) > 0) {
+  if (reckoning_.fill_late_inputs(x_now_) && learner_.model()->predict(x_now_, predictions_) > 0) {
     outputs_.predicted({.stamp_ns = received_ns_,
                         .data_ns = *origin_ns + nanoseconds(receiver_.now_s()),
                         .x = x_now_,
@@ -260,6 +263,7 @@ Health Engine::health() const {
   health.clock_restarts = stream.restarts();
   health.rows = rows_;
   health.rows_incomplete = rows_incomplete_;
+  health.row_late_s = row_late_s_;
   health.rows_dropped = reach_ ? 0 : queue_.dropped();  // a recording shows its rows again
   health.rows_waiting = queue_.size();
   health.record_error = recorder_ ? recorder_->error() : "";

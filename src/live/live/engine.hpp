@@ -81,6 +81,7 @@ class Engine {
   std::int64_t received_ns_ = 0;  // of the newest message
   std::size_t rows_ = 0;
   std::size_t rows_incomplete_ = 0;
+  double row_late_s_ = 0.0;
   std::size_t unrecorded_ = 0;  // messages, by earlier recorders
   Clock::time_point last_message_ = Clock::now();
   Clock::time_point forwarded_;  // the last request

@@ -130,10 +130,11 @@ struct Health {
   std::size_t clock_restarts = 0;   ///< times a clock was set back
   std::size_t rows = 0;             ///< made of messages
   std::size_t rows_incomplete = 0;  ///< rows with a value missing
-  std::size_t rows_dropped = 0;     ///< lost: the queue to the learner was full
-  std::size_t rows_waiting = 0;     ///< in the queue
-  std::string record_error{};       ///< why nothing is recorded; empty: no error
-  std::size_t unrecorded = 0;       ///< messages that aren't in a recording
+  double row_late_s = 0.0;       ///< from the last row's time to the message that completed the row
+  std::size_t rows_dropped = 0;  ///< lost: the queue to the learner was full
+  std::size_t rows_waiting = 0;  ///< in the queue
+  std::string record_error{};    ///< why nothing is recorded; empty: no error
+  std::size_t unrecorded = 0;    ///< messages that aren't in a recording
   ReckoningHealth reckoning;
   LearnerHealth learner;
 };

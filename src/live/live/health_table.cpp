@@ -141,6 +141,10 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
      run<&Health::rows>},
     {"incomplete", "rows_incomplete_total", "rows incomplete", "", count, learning,
      "rows with a value missing, not learned", run<&Health::rows_incomplete>},
+    {"row_late_s", "row_late_seconds", "rows come late by/s", "s", gauge, learning,
+     "from a row's time to the message that completes the row: half a window of poses or of a "
+     "centred derivative, and more",
+     run<&Health::row_late_s>},
     {"rows_paused", "rows_paused_total", "rows while frozen", "", count, learning,
      "rows while learning was frozen, not learned", learner<&LearnerHealth::rows_paused>,
      alert(never), old_key("paused")},

@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kMostStates = 6;  // of a DeadReckoning
 constexpr std::size_t kRollRate = 3;    // the first angular velocity
+constexpr std::string_view kNoPose = "no pose is measured";
 
 // Surge, sway and yaw rate first: motion in the plane. Other angular velocities are a gyro's.
 DeadReckoningSettings settings_of(const std::vector<std::string>& names) {
@@ -36,6 +37,19 @@ DeadReckoningSettings settings_of(const std::vector<std::string>& names) {
     }
   }
   return settings;
+}
+
+std::vector<std::size_t> late_inputs_of(const StreamPlan& plan) {
+  std::vector<std::size_t> late;
+  const auto& names = StreamPlan::Pose::kVelocities;
+  for (std::size_t i = 0; plan.pose && i < plan.inputs.size(); ++i) {
+    const std::string& input = plan.inputs[i];
+    if (std::ranges::count(names, input) > 0 &&
+        std::ranges::count(plan.sources, input, &StreamPlan::Source::name) == 0) {
+      late.push_back(i);
+    }
+  }
+  return late;
 }
 
 std::string_view fault_text(VelocityFault fault) {
@@ -72,6 +86,8 @@ LiveReckoning::LiveReckoning(const Configuration& configuration)
       states_(find_states(configuration.settings.shared.states, configuration.plan.inputs,
                           configuration.plan.targets.size())),
       commands_(configuration.plan.inputs, configuration.plan.rate_hz, configuration.plan.gap_s),
+      late_(late_inputs_of(configuration.plan)),
+      present_commands_(commands_),
       x_(configuration.plan.inputs.size()) {
   if (states_.size() > kMostStates) {
     states_.clear();
@@ -92,6 +108,7 @@ bool LiveReckoning::wants_model(double t) {
   waits_ = true;
   asked_s_ = t;
   due_s_ = t + kTuning.model_delay_s;
+  due_s_ += late_.empty() ? 0.0 : usual_silence_s();
   return true;
 }
 
@@ -126,6 +143,8 @@ bool LiveReckoning::acts_at_once() const {
 void LiveReckoning::begin_anew(const Receiver& receiver) {
   restarts_ = receiver.stream().restarts();
   *reckoning_ = DeadReckoning(model_->loop, settings_);
+  present_.reset();
+  based_s_ = -std::numeric_limits<double>::infinity();
   t_ = -std::numeric_limits<double>::infinity();
   asked_s_ = t_;
   waits_ = false;
@@ -153,8 +172,11 @@ std::optional<ReckonedSample> LiveReckoning::update(const Receiver& receiver,
   if (receiver.stream().restarts() != restarts_) {
     begin_anew(receiver);
   }
+  if (!late_.empty()) {
+    return update_present(receiver, received_ns, output);
+  }
   commands_.use(model_->alignment);
-  const bool has_commands = receiver.newest(commands_.shifts_s(), x_, states_);
+  const bool has_commands = receiver.inputs_at(receiver.now_s(), commands_.shifts_s(), x_, states_);
   const bool is_new = take_velocities(receiver);
   const double now_s = std::max(receiver.now_s(), t_);
   if (!has_commands || (!is_new && now_s < t_ + kTuning.least_step_s)) {
@@ -174,6 +196,80 @@ std::optional<ReckonedSample> LiveReckoning::update(const Receiver& receiver,
                         .data_ns = *receiver.origin_ns() + nanoseconds(t_),
                         .names = names_,
                         .reckoning = *reckoning_};
+}
+
+// From a row of poses until there is the next one: half a window, and what the stream waits.
+double LiveReckoning::usual_silence_s() const {
+  const StreamPlan& plan = configuration_.plan;
+  return late_.empty() ? 0.0 : plan.pose->half_s + plan.gap_s + plan.wait_s;
+}
+
+void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
+  if (late_.empty() || !reckoning_) {
+    return;
+  }
+  commands_.use(model_->alignment);
+  if (!receiver.inputs_at(row.t, commands_.shifts_s(), x_, late_)) {
+    return;
+  }
+  const bool is_stuck = configuration_.live.frozen == Frozen::skip && receiver.is_stuck(row.t);
+  for (const std::size_t input : late_) {
+    x_[input] = is_stuck ? std::numeric_limits<double>::quiet_NaN() : row.x[input];
+  }
+  commands_.act(x_, row.t);
+  reckoning_->update(x_, row.t);
+  row_x_.assign(row.x.begin(), row.x.end());
+  if (!reckoning_->started() || row.t < based_s_ + kTuning.between_poses_s) {
+    return;
+  }
+  health_.largest_step = std::max(health_.largest_step, reckoning_->step());
+  based_s_ = row.t;
+  present_ = std::make_unique<DeadReckoning>(*reckoning_);
+  present_commands_ = commands_;
+  const double step_s = std::max(kTuning.between_poses_s, 1.0 / configuration_.plan.rate_hz);
+  for (double t = row.t + step_s; t < receiver.now_s(); t += step_s) {
+    advance(receiver, t);
+  }
+}
+
+// By the model and the commands alone.
+void LiveReckoning::advance(const Receiver& receiver, double t) {
+  if (receiver.inputs_at(t, present_commands_.shifts_s(), x_, late_)) {
+    present_commands_.act(x_, t);
+    present_->update(x_, t);
+  }
+}
+
+std::optional<ReckonedSample> LiveReckoning::update_present(const Receiver& receiver,
+                                                            std::int64_t received_ns,
+                                                            Output& output) {
+  const double now_s = receiver.now_s();
+  if (!present_ || now_s < t_ + kTuning.least_step_s) {
+    return std::nullopt;
+  }
+  t_ = now_s;
+  advance(receiver, t_);
+  note_outage(output);
+  return ReckonedSample{.stamp_ns = received_ns,
+                        .data_ns = *receiver.origin_ns() + nanoseconds(t_),
+                        .names = names_,
+                        .reckoning = *present_};
+}
+
+bool LiveReckoning::fill_late_inputs(std::span<double> x) const {
+  if (late_.empty()) {
+    return true;
+  }
+  if (!present_) {
+    return false;
+  }
+  for (const std::size_t input : late_) {
+    const auto state = std::ranges::find(states_, input);
+    x[input] = state == states_.end()
+                   ? row_x_[input]
+                   : present_->velocity(static_cast<std::size_t>(state - states_.begin()));
+  }
+  return true;
 }
 
 // The gravest fault of a velocity of the log; a gyro has no say.
@@ -202,8 +298,9 @@ void LiveReckoning::note_faults() {
 
 void LiveReckoning::note_outage(Output& output) {
   const bool is_faulty = fault_ == VelocityFault::zero || fault_ == VelocityFault::frozen;
-  const double silent_s = reckoning_->silent_s();
-  if (silent_s == 0.0 && is_out_) {
+  const double silent_s = present()->silent_s();
+  const double usual_s = usual_silence_s();
+  if (silent_s <= usual_s && is_out_) {
     is_out_ = false;
     ++health_.outages;
     health_.longest_s = std::max(health_.longest_s, silent_s_);
@@ -211,27 +308,33 @@ void LiveReckoning::note_outage(Output& output) {
         "at {:.1f} s: velocities are measured again, after {:.1f} s; step {:.1f} standard "
         "deviations",
         t_, silent_s_, reckoning_->step()));
-  } else if (!is_out_ && (silent_s > kTuning.least_outage_s || (is_faulty && silent_s > 0.0))) {
+  } else if (!is_out_ &&
+             (silent_s > usual_s + kTuning.least_outage_s || (is_faulty && silent_s > 0.0))) {
     is_out_ = true;
-    output.event(fmt::format("at {:.1f} s: {}; velocities are reckoned", t_, fault_text(fault_)));
+    output.event(fmt::format("at {:.1f} s: {}; velocities are reckoned", t_,
+                             late_.empty() ? fault_text(fault_) : kNoPose));
   }
   silent_s_ = silent_s;
 }
 
 bool LiveReckoning::is_invalid(double t) const {
+  if (!late_.empty()) {
+    return false;
+  }
   const DerivativeSettings& derivative = configuration_.plan.derivative;
   return t + derivative.ahead_s() >= invalid_from_s_ && t - derivative.back_s() <= invalid_until_s_;
 }
 
 ReckoningHealth LiveReckoning::health() const {
   ReckoningHealth health = health_;
-  if (reckoning_ && reckoning_->started()) {
+  if (const DeadReckoning* const reckoning = present(); reckoning && reckoning->started()) {
     for (std::size_t i = 0; i < health.velocities.size(); ++i) {
-      health.velocities[i].value = reckoning_->velocity(i);
-      health.velocities[i].deviation = reckoning_->deviation(i);
+      health.velocities[i].value = reckoning->velocity(i);
+      health.velocities[i].deviation = reckoning->deviation(i);
     }
-    health.silent_s = reckoning_->silent_s();
-    health.fault = is_out_ ? std::string(fault_text(fault_)) : "";
+    health.silent_s = reckoning->silent_s();
+    const std::string_view fault = late_.empty() ? fault_text(fault_) : kNoPose;
+    health.fault = is_out_ ? std::string(fault) : "";
   } else {
     health.velocities.clear();
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,10 @@ std::shared_ptr<const ReckoningModel> reckoning_model(const DynamicsModel& model
                                                       const Alignment& alignment);
 
 /// Velocities at every message, through outages of the velocity log: a DeadReckoning between the
-/// receiver and the learner (docs/method/open_loop.md#live). Models come from the learner as
-/// of certain rows and serve a fixed time later, so that a replay gives the numbers of the live
-/// run. For the receiving thread.
+/// receiver and the learner (docs/method/open_loop.md#live). Velocities from poses are known half a
+/// window late: a DeadReckoning takes the rows, and a copy goes on from the newest row to the
+/// newest message. Models come from the learner as of certain rows and serve a fixed time later, so
+/// that a replay gives the numbers of the live run. For the receiving thread.
 class LiveReckoning {
  public:
   explicit LiveReckoning(const Configuration& configuration);
@@ -51,6 +53,14 @@ class LiveReckoning {
   std::optional<ReckonedSample> update(const Receiver& receiver, std::int64_t received_ns,
                                        Output& output);
 
+  /// Takes a row of `receiver` as a measurement, where velocities come from poses. Allocates.
+  void take_row(const SampleRow& row, const Receiver& receiver);
+
+  /// Places of the inputs that poses give too late for the present; empty without poses.
+  std::span<const std::size_t> late_inputs() const { return late_; }
+  /// Fills the late inputs with present values. False where there are none yet.
+  bool fill_late_inputs(std::span<double> x) const;
+
   /// Whether the row at `t` [s] uses velocities that the velocity log didn't measure: exact zeros
   /// or frozen values. Valid after the row was made.
   bool is_invalid(double t) const;
@@ -60,6 +70,11 @@ class LiveReckoning {
  private:
   bool acts_at_once() const;
   bool take_velocities(const Receiver& receiver);
+  std::optional<ReckonedSample> update_present(const Receiver& receiver, std::int64_t received_ns,
+                                               Output& output);
+  void advance(const Receiver& receiver, double t);
+  double usual_silence_s() const;
+  const DeadReckoning* present() const { return late_.empty() ? reckoning_.get() : present_.get(); }
   void begin_anew(const Receiver& receiver);
   void note_faults();
   void note_outage(Output& output);
@@ -72,6 +87,11 @@ class LiveReckoning {
   PresentCommands commands_;
   std::shared_ptr<const ReckoningModel> model_;
   std::unique_ptr<DeadReckoning> reckoning_;
+  std::vector<std::size_t> late_;
+  std::vector<double> row_x_;               // the last row's
+  std::unique_ptr<DeadReckoning> present_;  // goes on from a row; null without poses
+  PresentCommands present_commands_;        // of present_
+  double based_s_ = -std::numeric_limits<double>::infinity();  // row that present_ goes on from
   std::vector<double> x_;
   double t_ = -std::numeric_limits<double>::infinity();  // of the last estimate
   double asked_s_ = t_;                                  // row of the last wanted model

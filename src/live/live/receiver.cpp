@@ -2,6 +2,7 @@
 #include "live/receiver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/seconds.hpp"
@@ -11,6 +12,7 @@
 #include "log/ardusub.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
+#include "stream/attitude_source.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -24,9 +26,16 @@ std::optional<std::size_t> source_called(const StreamPlan& plan, const std::stri
              : std::optional(static_cast<std::size_t>(found - plan.sources.begin()));
 }
 
-// The signals that accelerations are derived from; without any, the inputs with a velocity's name.
+// The signals that accelerations are derived from, poses too; without any, the inputs with a
+// velocity's name.
 std::vector<std::size_t> velocities_of(const StreamPlan& plan) {
   std::vector<std::size_t> velocities;
+  for (const std::string& name : plan.pose ? plan.pose->sources() : std::vector<std::string>{}) {
+    velocities.push_back(plan.source(name));
+  }
+  if (plan.pose) {
+    return velocities;
+  }
   velocities.reserve(plan.derived.size());
   for (const StreamPlan::Derived& derived : plan.derived) {
     velocities.push_back(plan.source(derived.of));
@@ -72,9 +81,24 @@ Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_
     outputs_.push_back(mirror_motors_ ? log::output_of(source.from) : 0);
     factors_.emplace_back();
   }
-  for (const std::string& input : plan.inputs) {
-    inputs_.push_back(source_called(plan, input));
+  if (plan.pose && plan.pose->attitude.size() == 4) {
+    for (const std::string& part : plan.pose->attitude) {
+      quaternion_.push_back(plan.source(part));
+    }
   }
+  for (const std::string& input : plan.inputs) {
+    inputs_.push_back(place_of(input));
+  }
+}
+
+Receiver::InputPlace Receiver::place_of(const std::string& input) const {
+  constexpr std::array<const char*, 3> kAngles{"phi", "theta", "psi"};
+  InputPlace place{.source = source_called(stream_.plan(), input)};
+  const auto* const angle = std::ranges::find(kAngles, input);
+  if (!place.source && !quaternion_.empty() && angle != kAngles.end()) {
+    place.angle = static_cast<std::size_t>(angle - kAngles.begin());
+  }
+  return place;
 }
 
 void Receiver::bind(const bag::Topic& topic) {
@@ -218,23 +242,40 @@ void Receiver::finish() {
 }
 
 bool Receiver::is_stuck(double t) const {
-  return std::ranges::any_of(velocities_,
-                             [&](std::size_t source) { return stream_.is_stuck(source, t); });
+  const auto is_stuck = [&](std::size_t source) { return stream_.is_stuck(source, t); };
+  return stream_.plan().pose ? std::ranges::all_of(velocities_, is_stuck)
+                             : std::ranges::any_of(velocities_, is_stuck);
 }
 
 const SignalHistory* Receiver::input_signal(std::size_t input) const {
-  return inputs_[input] ? &stream_.signal(*inputs_[input]) : nullptr;
+  return inputs_[input].source ? &stream_.signal(*inputs_[input].source) : nullptr;
 }
 
-bool Receiver::newest(std::span<const double> shift_s, std::span<double> x,
-                      std::span<const std::size_t> silent) const {
+double Receiver::angle_at(double t, std::size_t angle) const {
+  std::array<double, 4> quaternion{};
+  for (std::size_t part = 0; part < quaternion.size(); ++part) {
+    const SignalHistory& signal = stream_.signal(quaternion_[part]);
+    quaternion[part] = signal.at(std::min(t, signal.newest_s()), Interpolation::hold);
+  }
+  return roll_pitch_yaw(quaternion)[angle];
+}
+
+bool Receiver::inputs_at(double t, std::span<const double> shift_s, std::span<double> x,
+                         std::span<const std::size_t> silent) const {
   const StreamPlan& plan = stream_.plan();
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::ranges::find(silent, i) != silent.end()) {
       x[i] = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
-    const std::optional<std::size_t>& source = inputs_[i];
+    const auto& [source, angle] = inputs_[i];
+    if (angle) {
+      x[i] = angle_at(t, *angle);
+      if (!std::isfinite(x[i])) {
+        return false;
+      }
+      continue;
+    }
     if (!source) {
       return false;
     }
@@ -244,7 +285,7 @@ bool Receiver::newest(std::span<const double> shift_s, std::span<double> x,
       return false;
     }
     // What is newer than the newest is held.
-    x[i] = signal.at(std::min(now_s_ + shift_s[i], newest_s), plan.sources[*source].between);
+    x[i] = signal.at(std::min(t + shift_s[i], newest_s), plan.sources[*source].between);
     if (!std::isfinite(x[i])) {
       return false;
     }

@@ -38,13 +38,14 @@ class Receiver {
   /// Ends the input: next() gives the waiting rows.
   void finish();
 
-  /// Whether a velocity of the row at `t` [s] is stuck.
+  /// Whether a velocity, or every part of the pose, of the row at `t` [s] is stuck.
   bool is_stuck(double t) const;
 
-  /// The present inputs, each from `shift_s` seconds later (below 0: earlier) as far as known.
-  /// False where an input is silent or derived; inputs at the places `silent` may be, and are NaN.
-  bool newest(std::span<const double> shift_s, std::span<double> x,
-              std::span<const std::size_t> silent = {}) const;
+  /// The inputs at `t` [s], at most now_s(), each from `shift_s` seconds later (below 0: earlier)
+  /// as far as known. False where an input is silent, derived or a velocity from poses; inputs at
+  /// the places `silent` may be, and are NaN.
+  bool inputs_at(double t, std::span<const double> shift_s, std::span<double> x,
+                 std::span<const std::size_t> silent = {}) const;
   /// The signal of an input; null of a derived input.
   const SignalHistory* input_signal(std::size_t input) const;
   double now_s() const { return now_s_; }  ///< the newest stamp, since the origin
@@ -72,7 +73,15 @@ class Receiver {
     double least = 0.0;
   };
 
+  // Where the present value of an input comes from.
+  struct InputPlace {
+    std::optional<std::size_t> source{};
+    std::optional<std::size_t> angle{};  // of the pose's quaternion: 0 roll, 1 pitch, 2 yaw
+  };
+
   void bind(const bag::Topic& topic);
+  InputPlace place_of(const std::string& input) const;
+  double angle_at(double t, std::size_t angle) const;
   bool is_valid(std::size_t topic) const;
   bool mirror(std::size_t source, TopicHealth& health, double& value);
   void add(const Held& sample);
@@ -96,7 +105,8 @@ class Receiver {
   std::vector<Validity> validity_;     // of topics in use
   std::vector<std::size_t> by_topic_;  // index of a transport's topic -> index here
   std::vector<std::size_t> velocities_;
-  std::vector<std::optional<std::size_t>> inputs_;  // source of each
+  std::vector<InputPlace> inputs_;
+  std::vector<std::size_t> quaternion_;  // sources of the pose's; or empty
   std::optional<std::int64_t> origin_ns_;
   std::int64_t before_ns_ = 0;  // the origin of times before moved_s_
   double moved_s_ = -std::numeric_limits<double>::infinity();

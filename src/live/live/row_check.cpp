@@ -9,13 +9,22 @@
 
 namespace kelpie::live {
 
+namespace {
+
+bool derives_all_targets(const StreamPlan& plan) {
+  const std::vector<std::string> of_pose =
+      plan.pose ? plan.pose->accelerations() : std::vector<std::string>{};
+  return std::ranges::all_of(plan.targets, [&](const std::string& target) {
+    return std::ranges::count(of_pose, target) > 0 ||
+           std::ranges::count(plan.derived, target, &StreamPlan::Derived::name) > 0;
+  });
+}
+
+}  // namespace
+
 RowCheck::RowCheck(const StreamPlan& plan, std::string states)
     : states_(std::move(states)),
-      is_idle_(std::ranges::all_of(plan.targets,
-                                   [&](const std::string& target) {
-                                     return std::ranges::count(plan.derived, target,
-                                                               &StreamPlan::Derived::name) > 0;
-                                   })),
+      is_idle_(derives_all_targets(plan)),
       thinning_(static_cast<std::size_t>(
           std::max(1.0, std::ceil(plan.rate_hz / kTuning.checked_rate_hz)))) {
   rows_.input_names = plan.inputs;

@@ -13,8 +13,8 @@
 namespace kelpie::live {
 
 /// Checks the rows of a live run by the rules for logs (log::target_mistakes), two minutes of rows
-/// at a time, thinned to at most 50 Hz. A plan whose targets are all derived from velocities has
-/// nothing to check. For one thread. Memory: the rows of two minutes.
+/// at a time, thinned to at most 50 Hz. A plan whose targets are all derived from velocities or
+/// poses has nothing to check. For one thread. Memory: the rows of two minutes.
 class RowCheck {
  public:
   /// `states`: the setting of this name.

@@ -14,6 +14,8 @@ inline constexpr struct Tuning {
   std::size_t most_held = 10'000;  ///< samples before there is an origin; bounds a flood
   double longest_idle_s = 2.0;     ///< without any message, until an error is reported
   std::size_t history = 4096;      ///< samples per signal: 2 s at 2 kHz; windows, gap and lags fit
+  double pose_rate_hz = 500.0;     ///< of signals beside a pose, whose whole window is kept
+  std::size_t most_history = 100'000;          ///< samples per signal: 1.6 MB
   std::chrono::seconds between_recordings{5};  ///< [s] between two chunks of a recording; the index
                                                ///< in memory grows with each; docs/howto/live.md
 
@@ -35,10 +37,11 @@ inline constexpr struct Tuning {
   // Dead reckoning (docs/method/open_loop.md#live)
   double between_models_s = 10.0;       ///< by the rows' clock
   double between_first_models_s = 2.0;  ///< until there is a model
-  double model_delay_s = 2.0;   ///< from a row until the model before that row serves: so live and
-                                ///< replayed runs change models at the same messages
-  double least_step_s = 0.02;   ///< between two estimates without a measurement
-  double least_outage_s = 1.0;  ///< s of silence; shorter silences are usual
+  double model_delay_s = 2.0;    ///< from a row until the model before that row serves: so live and
+                                 ///< replayed runs change models at the same messages
+  double least_step_s = 0.02;    ///< between two estimates without a measurement
+  double between_poses_s = 0.1;  ///< between two rows of a pose from which the present is reckoned
+  double least_outage_s = 1.0;   ///< s of silence; shorter silences are usual
 
   // Parameters (docs/howto/live.md#parameters)
   double identified_s = 1800.0;            ///< of rows that are identified: 3600 windows

@@ -18,6 +18,7 @@
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/known_roles.hpp"
+#include "log/pose_config.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -497,11 +498,15 @@ StreamPlan stream_plan(const LogConfig& config, const Roles& roles) {
   }
   if (plan.pose && plan.pose->half_s == 0.0) {
     refuse(config, "log.window",
-           "of a pose takes a whole log; give the window in s, as `kelpie convert` finds it");
+           "of a pose takes a whole log; give the window in s, as `kelpie learn` finds it");
+  }
+  Roles known = roles;
+  if (plan.pose) {
+    add_pose_targets(*plan.pose, known);
   }
   const std::vector<std::string> sampled = sampled_columns(plan);
   columns.names.insert(columns.names.end(), sampled.begin(), sampled.end());
-  const Roles parts = guess_roles(columns, roles);
+  const Roles parts = guess_roles(columns, known);
   plan.inputs = parts.inputs;
   plan.targets = parts.targets;
   return plan;

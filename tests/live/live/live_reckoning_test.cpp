@@ -16,6 +16,7 @@
 #include "kelpie/core/error.hpp"
 #include "live/engine.hpp"
 #include "live/mission.hpp"
+#include "live/pose_mission.hpp"
 #include "support.hpp"
 
 namespace kelpie::live_reckoning_test {
@@ -31,12 +32,13 @@ constexpr std::int64_t kBegin = 1'700'000'000 * kSecond;
 // learner is never far behind.
 class Messages final : public live::Transport {
  public:
-  Messages(std::vector<Recorded> messages, std::optional<log::Reach> reach)
-      : messages_(std::move(messages)), reach_(reach) {}
+  Messages(const std::vector<bag::Topic>& topics, std::vector<Recorded> messages,
+           std::optional<log::Reach> reach)
+      : topics_(topics), messages_(std::move(messages)), reach_(reach) {}
 
   std::function<bool()> is_behind;
 
-  const std::vector<bag::Topic>& topics() const override { return testing::mission_topics(); }
+  const std::vector<bag::Topic>& topics() const override { return topics_; }
   std::optional<log::Reach> reach() const override { return reach_; }
   Got next(bag::Message& message, std::chrono::milliseconds) override {
     while (!reach_ && is_behind()) {
@@ -50,6 +52,7 @@ class Messages final : public live::Transport {
   }
 
  private:
+  const std::vector<bag::Topic>& topics_;
   std::vector<Recorded> messages_;
   std::optional<log::Reach> reach_;
   std::size_t at_ = 0;
@@ -111,14 +114,21 @@ class Reckoning : public ::testing::Test {
  protected:
   live::Health run(const std::vector<Recorded>& messages, bool is_replay = false,
                    const std::string& live = "") {
-    testing::write_text(folder_ / "x.toml",
-                        testing::mission_config("clock = \"header\"", "align = \"none\"\n" + live));
+    return run_as(testing::mission_config("clock = \"header\"", "align = \"none\"\n" + live),
+                  testing::mission_topics(), messages, is_replay);
+  }
+
+  live::Health run_as(const std::string& toml, const std::vector<bag::Topic>& topics,
+                      const std::vector<Recorded>& messages, bool is_replay) {
+    testing::write_text(folder_ / "x.toml", toml);
     const live::Configuration configuration = live::read_configuration(folder_ / "x.toml", {});
     std::optional<log::Reach> reach;
     if (is_replay) {
-      reach = log::Reach{.origin_ns = kBegin + 3 * kSecond / 1000, .end_s = 1000.0};
+      reach = log::Reach{
+          .origin_ns = topics.front().name == "/odom" ? kBegin + 3 * kSecond / 1000 : kBegin,
+          .end_s = 1000.0};
     }
-    Messages transport(messages, reach);
+    Messages transport(topics, messages, reach);
     live::Outputs outputs;
     std::vector<std::unique_ptr<live::Output>> list;
     estimates_.clear();
@@ -252,6 +262,58 @@ TEST_F(Reckoning, WildVelocitiesMoveLittle) {
   EXPECT_LT(largest_error(80, 100), 0.1);
   EXPECT_LE(largest_step(), 3.0 + 1e-9);
   EXPECT_FALSE(std::isnan(first_fault_s(VelocityFault::implausible)));
+}
+
+// Poses in place of velocities: the present is reckoned from a row that is half a window old.
+class ReckoningFromPoses : public Reckoning {
+ protected:
+  // Root mean square of surge less the truth, at all estimates.
+  double error(double from_s, double to_s) const {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const Estimate& one : estimates_) {
+      const double t = one.t_s();
+      if (from_s <= t && t < to_s) {
+        const auto at = static_cast<std::size_t>(std::lround(10.0 * t));
+        sum += std::pow(one.u - log_.samples.at(at).u, 2.0);
+        ++count;
+      }
+    }
+    return std::sqrt(sum / static_cast<double>(count));
+  }
+
+  testing::PoseLog log_{200.0};
+};
+
+TEST_F(ReckoningFromPoses, VelocitiesOfThePresentFollowTheCommands) {
+  const std::vector<Recorded> messages = testing::pose_mission(log_, kBegin, 0.01);
+  const std::string config = testing::pose_config("window = 2.4", "align = \"none\"");
+  const live::Health health = run_as(config, testing::pose_topics(), messages, false);
+  const std::vector<Estimate> live = estimates_;
+  ASSERT_GT(live.size(), 500U);
+  EXPECT_NEAR(health.row_late_s, 1.2, 0.3);
+  EXPECT_NEAR(health.reckoning.silent_s, 1.2, 0.4);
+  EXPECT_EQ(said_.find("reckoned"), std::string::npos) << said_;
+  double late = 0.0;  // of a velocity held for half a window
+  for (std::size_t k = 1000; k + 12 < log_.samples.size(); ++k) {
+    late += std::pow(log_.samples[k + 12].u - log_.samples[k].u, 2.0);
+  }
+  late = std::sqrt(late / static_cast<double>(log_.samples.size() - 1012));
+  EXPECT_LT(error(120.0, 200.0), 0.35 * late);
+  run_as(config, testing::pose_topics(), messages, true);
+  EXPECT_EQ(estimates_.size(), live.size());
+  EXPECT_TRUE(estimates_ == live);
+}
+
+TEST_F(ReckoningFromPoses, ASilenceOfPosesIsAnOutage) {
+  std::vector<Recorded> messages = testing::pose_mission(log_, kBegin, 0.01);
+  std::erase_if(messages,
+                [](const Recorded& m) { return m.topic == 0 && is_between(m, 120, 140); });
+  const live::Health health = run_as(testing::pose_config("window = 4", "align = \"none\""),
+                                     testing::pose_topics(), messages, false);
+  EXPECT_NE(said_.find("no pose is measured; velocities are reckoned"), std::string::npos) << said_;
+  EXPECT_EQ(health.reckoning.outages, 1U);
+  EXPECT_LT(error(120.0, 140.0), 0.15);
 }
 
 }  // namespace
