@@ -20,6 +20,7 @@ struct PlanArguments {
   std::string scenario;
   DriveStudyPlan plan;
   std::uint64_t seed = 1;
+  double rate_hz = 0.0;
   double percent = 5.0;
   std::string out = "out/plan";
 };
@@ -92,6 +93,9 @@ void run_plan(const PlanArguments& options) {
   plan.scenario = vehicle::read_scenario(scenario_file(options.scenario, "identify.toml"));
   vehicle::require_plane(plan.scenario.vehicle);
   plan.scenario.seed = options.seed;
+  if (options.rate_hz > 0.0) {
+    plan.scenario.rate_hz = options.rate_hz;
+  }
   plan.share = options.percent / 100.0;
   run_study({options.out, "plan", "driving", {options.scenario}}, plan, study_drives,
             [&](const DriveStudy& study) {
@@ -100,6 +104,7 @@ void run_plan(const PlanArguments& options) {
                                            {"version", 1},
                                            {"simulated", true},
                                            {"first_seed", options.seed},
+                                           {"rate_hz", plan.scenario.rate_hz},
                                            {"share", plan.share},
                                            {"first_s", plan.first_s},
                                            {"leg_s", plan.leg_s},
@@ -119,6 +124,8 @@ void add_plan(CLI::App& app) {
       "Time to identify the simulated vehicle by planned, random and a pilot's driving", run_plan);
   cli::add_file(command, "--scenario", options->scenario,
                 "scenario of one configuration; else scenarios/identify.toml");
+  command->add_option("--rate", options->rate_hz, "rows per second; else the scenario's")
+      ->check(CLI::PositiveNumber);
   command->add_option("--tell", options->plan.tell, "parameters, as of `kelpie plan`")
       ->delimiter(',');
   command->add_option("--percent", options->percent, "half width of the 90 % intervals")

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/sparse_online_svr.hpp"
 
+#include "kelpie/svr/budget.hpp"
 #include "learner/valid_sample.hpp"
-#include "svr/budget.hpp"
 
 #include <algorithm>
 #include <array>

@@ -13,9 +13,9 @@
 #include "chart/wording.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/svr/budget.hpp"
 #include "model/dynamics_axis.hpp"
 #include "study/summary.hpp"
-#include "svr/budget.hpp"
 
 namespace kelpie::lab {
 namespace {

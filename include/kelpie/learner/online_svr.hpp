@@ -12,7 +12,7 @@
 
 namespace kelpie {
 
-class Budget;
+class Budget;  // kelpie/svr/budget.hpp
 class SampleCollector;
 class Solver;
 class SvrFunction;

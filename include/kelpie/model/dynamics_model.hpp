@@ -13,7 +13,7 @@
 
 namespace kelpie {
 
-class Budget;
+class Budget;  // kelpie/svr/budget.hpp
 class Diagnosis;
 class DynamicsAxis;
 struct Coefficient;

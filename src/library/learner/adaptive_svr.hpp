@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "kelpie/learner/online_svr.hpp"
+#include "kelpie/svr/budget.hpp"
 #include "learner/change_detector.hpp"
 #include "learner/past_models.hpp"
 #include "learner/robust_scale.hpp"
 #include "learner/sample_collector.hpp"
 #include "learner/term_change.hpp"
-#include "svr/budget.hpp"
 #include "svr/svr_function.hpp"
 
 namespace kelpie {

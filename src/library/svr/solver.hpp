@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "svr/budget.hpp"
+#include "kelpie/svr/budget.hpp"
 #include "svr/dual_problem.hpp"
 #include "svr/tuning.hpp"
 

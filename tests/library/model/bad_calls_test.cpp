@@ -13,6 +13,8 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/shared_model.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "kelpie/svr/budget.hpp"
+#include "model/planar_drive.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 
@@ -21,6 +23,7 @@ namespace {
 
 using testing::Drive;
 using testing::message_of;
+using testing::PlanarDrive;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -131,6 +134,9 @@ TEST_F(BadCalls, WhoComesInDuringAnUpdateIsToldSo) {
       EXPECT_TRUE(refused([&] { model.predict(drive_.x[0], y); }));
       EXPECT_TRUE(refused([&] { model.update(drive_.x[0], drive_.y[0], 1e3); }));
       EXPECT_TRUE(refused([&] { static_cast<void>(model.save()); }));
+      EXPECT_TRUE(refused([&] { static_cast<void>(model.findings()); }));
+      EXPECT_TRUE(refused([&] { static_cast<void>(model.past_models(0)); }));
+      EXPECT_TRUE(refused([&] { model.limit(Budget()); }));
     }).join();
   });
   EXPECT_NO_THROW(model.predict(drive_.x[0], y));
@@ -154,6 +160,50 @@ TEST_F(BadCalls, TwoThreadsAtOnceDoNoHarm) {
   work();
   other.join();
   EXPECT_TRUE(model.ready());
+}
+
+// Run under the thread sanitizer, too. Coefficients have moved, so the model in service is a sum.
+TEST(SavingAModel, LeavesPredictionsToOtherThreads) {
+  PlanarDrive drive;
+  drive.drive(1, 2400, 0.5);
+  drive.drive(2, 200, 0.5, 0.5, 1.6);
+  DynamicsModel model(drive.inputs, drive.targets, ModelSettings::from_preset("default", 2));
+  bool has_changed = false;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    model.update(drive.x[i], drive.y[i], drive.t[i]);
+    has_changed = has_changed || std::ranges::any_of(model.decisions(), &Decision::changed);
+  }
+  EXPECT_TRUE(has_changed);
+  std::array<double, 2> before{};
+  model.predict(drive.x.back(), before);
+  std::thread other([&] {
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_FALSE(model.save().empty());
+    }
+  });
+  for (int i = 0; i < 20'000; ++i) {
+    std::array<double, 2> now{};
+    model.predict(drive.x.back(), now);
+    EXPECT_EQ(now, before);
+  }
+  other.join();
+}
+
+TEST_F(BadCalls, AnAxisThatThereIsNotIsRefused) {
+  DynamicsModel model = fresh(drive_);
+  const auto refused = [](const std::function<void()>& call) {
+    return message_of<InputError>(call) == "axis: 2 given; there are 2";
+  };
+  EXPECT_TRUE(refused([&] { static_cast<void>(model.axis(2)); }));
+  EXPECT_TRUE(refused([&] { static_cast<void>(model.mechanisms(2)); }));
+  EXPECT_TRUE(refused([&] { static_cast<void>(model.past_models(2)); }));
+  EXPECT_TRUE(refused([&] { model.set_past_models(2, {}); }));
+}
+
+TEST_F(BadCalls, ASharedModelNeedsTwoSnapshots) {
+  EXPECT_TRUE(message_of<InputError>([&] {
+                const SharedModel shared(fresh(drive_), 1);
+              }).starts_with("snapshots: has to be at least 2"));
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "allocation_count.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/stored_past_model.hpp"
+#include "kelpie/svr/budget.hpp"
 #include "model/dynamics_axis.hpp"
-#include "svr/budget.hpp"
 #include "vehicle_stream.hpp"
 
 namespace kelpie::real_time_test {
