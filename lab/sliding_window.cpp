@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/sliding_window.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/sparse_online_svr.hpp"
 
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 #include "learner/valid_sample.hpp"
 
 #include <algorithm>

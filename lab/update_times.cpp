@@ -13,7 +13,7 @@
 #include "chart/wording.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 #include "model/dynamics_axis.hpp"
 #include "study/summary.hpp"
 

@@ -12,7 +12,7 @@
 
 namespace kelpie {
 
-class Budget;  // kelpie/svr/budget.hpp
+class Budget;  // kelpie/svr/resources.hpp
 class SampleCollector;
 class Solver;
 class SvrFunction;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "kelpie/core/setting.hpp"
-#include "kelpie/svr/storage.hpp"
+#include "kelpie/svr/resources.hpp"
 
 namespace kelpie {
 

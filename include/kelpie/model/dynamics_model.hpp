@@ -13,7 +13,7 @@
 
 namespace kelpie {
 
-class Budget;  // kelpie/svr/budget.hpp
+class Budget;  // kelpie/svr/resources.hpp
 class Diagnosis;
 class DynamicsAxis;
 struct Coefficient;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kelpie/learner/online_svr.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 #include "learner/change_detector.hpp"
 #include "learner/past_models.hpp"
 #include "learner/robust_scale.hpp"

@@ -167,8 +167,10 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
 }
 
 GuardedAxis& DynamicsModel::Parts::axis_at(std::size_t axis) {
-  require(axis < axes.size(), "axis",
-          std::to_string(axis) + " given; there are " + std::to_string(axes.size()));
+  if (axis >= axes.size()) {
+    throw InputError("axis",
+                     std::to_string(axis) + " given; there are " + std::to_string(axes.size()));
+  }
   return axes[axis];
 }
 

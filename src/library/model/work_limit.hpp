@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 
 namespace kelpie {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/svr/storage.hpp"
+#include "kelpie/svr/resources.hpp"
 
 namespace kelpie {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 #include "svr/dual_problem.hpp"
 #include "svr/tuning.hpp"
 

@@ -356,9 +356,6 @@ void learn(const LearnArguments& options) {
   }
   const std::vector<format::LearnedLog> learned = all_learned(options, from, log.learned);
   const study::StreamResult result = learn_with_progress(options, plan, model, earlier, identity);
-  if (!model.ready() && !result.interrupted) {
-    refuse_without_model(plan);
-  }
   std::vector<report::NextStep> next;
   if (model.ready() && report::is_poor(result)) {
     next = report::after_poor_model(options.log.source.path, options.text(options.config));
@@ -371,6 +368,9 @@ void learn(const LearnArguments& options) {
                     result.interrupted ? std::vector<format::LearnedLog>{} : learned, log, next);
   if (!options.memory.empty()) {
     write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
+  }
+  if (!model.ready() && !result.interrupted) {
+    refuse_without_model(plan);
   }
   give(answer_of(options, result, has_model, !log.draft.empty(), next), options.answer);
 }

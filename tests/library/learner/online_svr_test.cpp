@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/learner/online_svr.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

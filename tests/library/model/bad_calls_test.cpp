@@ -13,7 +13,7 @@
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/shared_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 #include "model/planar_drive.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"

@@ -12,7 +12,7 @@
 #include "allocation_count.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/stored_past_model.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 #include "model/dynamics_axis.hpp"
 #include "vehicle_stream.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 
 namespace kelpie::work_limit_test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/svr/budget.hpp"
+#include "kelpie/svr/resources.hpp"
 
 #include <gtest/gtest.h>
 

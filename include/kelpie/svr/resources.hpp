@@ -8,6 +8,12 @@
 
 namespace kelpie {
 
+/// Number format of a kernel matrix.
+enum class Storage : std::uint8_t {
+  float64,  ///< as computed
+  float32,  ///< rounded to 24 bits, half the memory
+};
+
 /// Work, counted in visited numbers: equal on every machine, 0.2 to 0.5 ns per number on the
 /// machine of docs/measured/performance.md.
 using Work = std::int64_t;
