@@ -197,7 +197,7 @@ def test_fit_warns_of_a_log_that_cannot_be_right(mistake, rate, words):
         kelpie.DynamicsModel(**small, rate=rate).fit(mistake(frame))
 
 
-def drive(seconds, step=0.01):
+def drive_of_known_parameters(seconds, step=0.01):
     """t, pose and commands of u' = n|n| - 0.5 u - 0.8 u|u| + v r, v' = -0.9 v - u r,
     r' = 0.6 m - 0.7 r, at 10 Hz."""
     random = np.random.default_rng(3)
@@ -219,7 +219,7 @@ def drive(seconds, step=0.01):
 
 
 def test_poses_are_learned_without_a_velocity_in_the_log(tmp_path):
-    np.savetxt(tmp_path / "log.csv", drive(600.0), delimiter=",", comments="",
+    np.savetxt(tmp_path / "log.csv", drive_of_known_parameters(600.0), delimiter=",", comments="",
                header="t,x,y,psi,n,m")
     inputs = ["u", "v", "r", "n", "m"]
     log = kelpie.read_log(tmp_path / "log.csv", pose=["x", "y", "psi"], inputs=inputs, rate=5.0,
@@ -247,7 +247,7 @@ def test_poses_are_learned_without_a_velocity_in_the_log(tmp_path):
 
 
 def test_poses_that_cannot_be_are_named(tmp_path):
-    np.savetxt(tmp_path / "log.csv", drive(20.0), delimiter=",", comments="",
+    np.savetxt(tmp_path / "log.csv", drive_of_known_parameters(20.0), delimiter=",", comments="",
                header="t,x,y,psi,n,m")
     with pytest.raises(ValueError, match="x and y belong together"):
         kelpie.read_log(tmp_path / "log.csv", pose=["x", "psi"], inputs=["u", "n", "m"])

@@ -263,7 +263,7 @@ MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size
   };
   const auto fitting = [&](bool cross_flow) {
     const MotionTerms first = fossen(inputs, velocities, cross_flow, cross_flow, attitude);
-    MotionTerms all = through_flow(first, states);
+    const MotionTerms all = through_flow(first, states);
     return all.size() <= most ? all : through_flow(first, std::min<std::size_t>(states, 1));
   };
   const MotionTerms full = fitting(true);
