@@ -327,7 +327,8 @@ bool LiveReckoning::is_invalid(double t) const {
 
 ReckoningHealth LiveReckoning::health() const {
   ReckoningHealth health = health_;
-  if (const DeadReckoning* const reckoning = present(); reckoning && reckoning->started()) {
+  if (const DeadReckoning* const reckoning = present();
+      reckoning != nullptr && reckoning->started()) {
     for (std::size_t i = 0; i < health.velocities.size(); ++i) {
       health.velocities[i].value = reckoning->velocity(i);
       health.velocities[i].deviation = reckoning->deviation(i);
