@@ -21,12 +21,12 @@
 #include "live/row_reader.hpp"
 #include "live/tuning.hpp"
 #include "log/draft.hpp"
+#include "study/identification.hpp"
 
 namespace kelpie::live {
 namespace {
 
 constexpr double kLeastThrust = 1e-12;  // N per square of a unit, such as µs
-constexpr double kMostThrust = 1e9;
 
 double number_between(const file::TomlNode& value, double least, double most,
                       const std::string& unit) {
@@ -112,7 +112,7 @@ ParameterSettings read_parameters(const file::TomlNode& table) {
   if (table.has("thrust")) {
     for (const file::TomlNode& value : table["thrust"].members("a table, as in {th1 = 0.0262}")) {
       settings.thrust.emplace_back(value.key(),
-                                   number_between(value, kLeastThrust, kMostThrust, "N"));
+                                   number_between(value, kLeastThrust, study::kMostThrust, "N"));
     }
   }
   return settings;

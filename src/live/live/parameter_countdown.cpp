@@ -89,16 +89,7 @@ void ParameterCountdown::update(std::span<const double> x, double t, bool change
 void ParameterCountdown::keep(std::span<const double> x, double t) {
   const bool follows = rows_.rows() > 0 && t > rows_.times_s.back() &&
                        t - rows_.times_s.back() <= kLongestStep / rate_hz_;
-  if (!follows) {
-    rows_.starts.push_back(rows_.rows());
-  }
-  rows_.times_s.push_back(t);
-  for (const std::size_t velocity : columns_.velocities) {
-    rows_.velocities.push_back(x[velocity]);
-  }
-  for (const std::size_t thruster : columns_.thrusters) {
-    rows_.speeds.push_back(x[thruster]);
-  }
+  study::add_row(rows_, x, t, columns_, follows);
   if (rows_.rows() > rows_in(kTuning.identified_s + kTuning.forgotten_s)) {
     forget_oldest(rows_in(kTuning.forgotten_s));
   }

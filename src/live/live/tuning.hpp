@@ -46,7 +46,7 @@ inline constexpr struct Tuning {
   // Parameters (docs/howto/live.md#parameters)
   double identified_s = 1800.0;            ///< of rows that are identified: 3600 windows
   double forgotten_s = 300.0;              ///< of rows that go at a time, the oldest
-  double between_identifications_s = 5.0;  ///< a fit of half an hour takes some 0.1 s
+  double between_identifications_s = 5.0;  ///< a fit of half an hour takes 0.3 s at 20 Hz
 
   // Reports
   double least_pause_s = 0.1;    ///< between checkpoints or reports of status; reference/limits.md

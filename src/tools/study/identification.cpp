@@ -177,6 +177,20 @@ PlanarColumns planar_columns(const log::Dataset& data, const std::string& states
   return columns;
 }
 
+void add_row(PlanarRows& rows, std::span<const double> inputs, double t,
+             const PlanarColumns& columns, bool follows) {
+  if (!follows) {
+    rows.starts.push_back(rows.rows());
+  }
+  rows.times_s.push_back(t);
+  for (const std::size_t velocity : columns.velocities) {
+    rows.velocities.push_back(inputs[velocity]);
+  }
+  for (const std::size_t thruster : columns.thrusters) {
+    rows.speeds.push_back(inputs[thruster]);
+  }
+}
+
 PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
                        const PlanarColumns& columns) {
   PlanarRows planar;
@@ -187,17 +201,10 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
   const double longest_s = kLongestStep / data.rate_hz;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t row = rows[i];
-    if (i == 0 || row != rows[i - 1] + 1 || data.times_s[row] - data.times_s[row - 1] > longest_s ||
-        data.configurations[row] != data.configurations[row - 1]) {
-      planar.starts.push_back(i);
-    }
-    planar.times_s.push_back(data.times_s[row]);
-    for (const std::size_t velocity : columns.velocities) {
-      planar.velocities.push_back(data.input(row)[velocity]);
-    }
-    for (const std::size_t thruster : columns.thrusters) {
-      planar.speeds.push_back(data.input(row)[thruster]);
-    }
+    const bool follows = i > 0 && row == rows[i - 1] + 1 &&
+                         data.times_s[row] - data.times_s[row - 1] <= longest_s &&
+                         data.configurations[row] == data.configurations[row - 1];
+    add_row(planar, data.input(row), data.times_s[row], columns, follows);
   }
   return planar;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,9 @@
 #include "study/split.hpp"
 
 namespace kelpie::study {
+
+/// The largest forward thrust that can be given, N per square of the thruster's unit.
+inline constexpr double kMostThrust = 1e9;
 
 /// Known quantities that give forces their unit. A log without them yields ratios to the surge
 /// inertia.
@@ -77,6 +81,10 @@ struct PlanarColumns {
 /// thruster, and on an input without a thruster's name where `wanted` is empty.
 PlanarColumns planar_columns(const log::Dataset& data, const std::string& states,
                              const std::vector<std::string>& wanted);
+
+/// Adds a row of inputs. `follows`: without a gap behind the row before; else a stretch begins.
+void add_row(PlanarRows& rows, std::span<const double> inputs, double t,
+             const PlanarColumns& columns, bool follows);
 
 /// Ascending rows as stretches without a gap or a change of configuration.
 PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
