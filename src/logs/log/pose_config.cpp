@@ -100,7 +100,12 @@ LogConfig pose_config(const Table& table, const Roles& roles) {
     refuse_pose(table, "--time", "names the column of the time, which poses take");
   }
   std::vector<std::string> others;
-  const std::vector<std::string> wanted = roles.inputs.empty() ? commands_of(table) : roles.inputs;
+  std::vector<std::string> wanted = roles.inputs.empty() ? commands_of(table) : roles.inputs;
+  for (const std::string& label : {roles.configuration, roles.held_out}) {
+    if (!label.empty() && std::ranges::count(wanted, label) == 0) {
+      wanted.push_back(label);
+    }
+  }
   for (const std::string& name : wanted) {
     const bool is_of_pose = std::ranges::count(StreamPlan::Pose::kVelocities, name) > 0 ||
                             std::ranges::count(columns, name) > 0;

@@ -264,6 +264,20 @@ Roles over(const Roles& wanted, const Roles& drafted) {
   return roles;
 }
 
+// Rows whose window has one label keep the label; rows with several labels in the window get none.
+void restore_labels(const Roles& roles, Table& table) {
+  constexpr double kRounding = 1e-9;
+  for (const std::string& name : {roles.configuration, roles.held_out}) {
+    if (name.empty()) {
+      continue;
+    }
+    for (double& mean : table.columns[table.find(name)]) {
+      const double label = std::round(mean);
+      mean = std::abs(mean - label) <= kRounding ? label : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+}
+
 Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogConfig& config,
                 const Roles& roles) {
   const SamplingPlan plan = sampling_plan(config, roles);
@@ -295,6 +309,9 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
   Samples samples = sample(plan, std::move(found.signals), source.path);
   log.table = std::move(samples.table);
   log.sampling = std::move(samples.report);
+  if (plan.pose) {
+    restore_labels(log.roles, log.table);
+  }
   log.roles.time = "t";
   log.roles.rate_hz = 0.0;
   return log;

@@ -166,7 +166,7 @@ health::HealthTable judge_drives(const HealthArguments& options,
   }
   is_dated = set_days(logs, missions, times_s);
   const log::Dataset& first = logs.front().data;
-  health::DriveColumns columns{
+  const health::DriveColumns columns{
       .velocities = find_states(reader.first->settings.shared.states, first.input_names,
                                 first.target_names.size()),
       .volts = options.volts,

@@ -194,7 +194,7 @@ std::optional<Identified> on_six_axes(const IdentifyArguments& options,
   }
   const double neutral = log.alignment.alignment.actuators.empty() ? study::kRestUs : 0.0;
   Identified result{.found = {}, .frame = body_frame(options.frame, true)};
-  SixAxisSettings how{.start = {.lag_s = find_times ? 0.1 : 0.0}, .find_times = find_times};
+  const SixAxisSettings how{.start = {.lag_s = find_times ? 0.1 : 0.0}, .find_times = find_times};
   result.found =
       study::identify_six_axes(log.data, log.split, *columns, vehicle, result.frame, neutral,
                                of_full_commands(wish, vehicle), options.only, how);

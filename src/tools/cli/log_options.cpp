@@ -368,7 +368,7 @@ std::vector<std::pair<std::string, double>> known_thrusts(const std::vector<std:
   for (const std::string& assignment : thrust) {
     const auto [name, text] = format::key_and_value(assignment, "--thrust");
     double value = 0.0;
-    if (!parse_number(text, value) || !(value > 0.0 && value <= study::kMostThrust)) {
+    if (!parse_number(text, value) || !(value > 0.0) || value > study::kMostThrust) {
       throw InputError("--thrust", "'" + text + "' of '" + name +
                                        "' has to be a number > 0, up to 1e+09, in N per square of "
                                        "the thruster's unit");

@@ -136,13 +136,12 @@ void add_threads(CLI::App* command, std::size_t& threads) {
 CLI::Validator within(double low, double high) {
   const std::string range =
       "has to be a number from " + number_text(low) + " to " + number_text(high);
-  return CLI::Validator(
-      [=](const std::string& text) {
-        double value = 0.0;
-        const bool is_good = parse_number(text, value) && value >= low && value <= high;
-        return is_good ? std::string() : "'" + text + "' " + range;
-      },
-      "");
+  return {[=](const std::string& text) {
+            double value = 0.0;
+            const bool is_good = parse_number(text, value) && value >= low && value <= high;
+            return is_good ? std::string() : "'" + text + "' " + range;
+          },
+          ""};
 }
 
 void print_notes(const ModelSettings& settings, const format::SettingsFile& file,

@@ -101,7 +101,7 @@ void print_safely(std::FILE* stream, std::string_view text) {
 void print_unless_silent(std::FILE* stream, std::string_view text) {
   if (kept != nullptr) {
     kept->append(text);
-  } else if (!silent && !(hushed && stream == stdout)) {
+  } else if (!silent && (!hushed || stream != stdout)) {
     print_safely(stream, text);
   }
 }

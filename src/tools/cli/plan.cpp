@@ -141,7 +141,7 @@ void run_plan(const DriveArguments& options) {
     throw InputError("--apart", "and --tell are two aims: give one");
   }
   const format::PlannedDrive drive = planned(options);
-  std::vector<std::string> names{kSetpoints, kNumbers, kPlanPage, kScript};
+  const std::vector<std::string> names{kSetpoints, kNumbers, kPlanPage, kScript};
   const file::OutFolder out = take_out_folder(options.out, names, options.files());
   file::FileSet files{{kSetpoints, format::drive_csv(drive)},
                       {kNumbers, format::drive_json(drive)},

@@ -124,7 +124,7 @@ std::size_t help_width() {
   const char* const columns = std::getenv("COLUMNS");  // NOLINT(concurrency-mt-unsafe)
   if (columns == nullptr || !parse_number(columns, width)) {
     const bool is_terminal = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
-    width = is_terminal ? window.ws_col : kUsual;
+    width = static_cast<double>(is_terminal ? window.ws_col : kUsual);
   }
   return static_cast<std::size_t>(std::clamp<double>(width, kLeast, kMost));
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "cli/command.hpp"
@@ -44,6 +45,27 @@ TEST_F(Poses, AreLearnedWithoutAVelocityInTheLog) {
   testing::succeeded(run("learn log.csv --config c.toml --out one" + testing::kFewSamples));
   EXPECT_EQ(json("one/model.json")["axes"], json("out/model.json")["axes"]);
   EXPECT_NE(content("a.csv").find("udot"), std::string::npos);
+}
+
+TEST_F(Poses, RowsAreHeldOutByAColumnOfTheLog) {
+  const std::string log = testing::PoseLog(450.0).csv(0.01);
+  std::istringstream lines(log);
+  std::string line;
+  std::getline(lines, line);
+  std::string marked = line + ",held\n";
+  while (std::getline(lines, line)) {
+    const double t_s = std::stod(line);
+    marked += line + (t_s > 200.0 && t_s < 300.0 ? ",1\n" : ",0\n");
+  }
+  write("marked.csv", marked);
+  testing::succeeded(run(
+      "learn marked.csv --pose x,y,psi --inputs u,v,r,n,m --rate 5 --split column:held --out out" +
+      testing::kFewSamples));
+  const nlohmann::json result = json("out/result.json");
+  const double held_out_s = result["held_out_rows"].get<double>() / 5.0;
+  EXPECT_LT(held_out_s, 100.0);
+  EXPECT_GT(held_out_s, 80.0);  // but for rows whose window has rows of both sides
+  EXPECT_EQ(json("out/model.json")["inputs"], nlohmann::json({"u", "v", "r", "n", "m"}));
 }
 
 TEST_F(Poses, AreRefusedWithWhatWouldBeRight) {
