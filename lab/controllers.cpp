@@ -42,12 +42,12 @@ class PidController final : public Controller {
     const Sensed sensed = reckoner_->complete(measured);
     diagnose(measured);
     const TrackingError error = tracking_error(reference, sensed);
-    Eigen::Vector3d acceleration = pid_.update(error, kControlPeriodS);
+    const Eigen::Vector3d acceleration = pid_.update(error, kControlPeriodS);
     Eigen::Vector3d forces = model_.mass.cwiseProduct(acceleration);
     if (feed_forward_) {
       forces += model_.mass.cwiseProduct(error.acceleration) + model_.resistance(error.wanted);
     }
-    const Eigen::Vector3d commands = reallocation_.allocate(forces);
+    Eigen::Vector3d commands = reallocation_.allocate(forces);
     if ((commands.cwiseAbs().array() >= model_.most_rps.array()).any()) {
       pid_.saturated();
     }
@@ -108,7 +108,7 @@ class AdaptiveController final : public Controller {
     for (int axis = 0; axis < 3; ++axis) {
       forces(axis) += theta_.col(axis).dot(regressors[static_cast<std::size_t>(axis)]);
     }
-    const Eigen::Vector3d commands = model_.allocate(forces);
+    Eigen::Vector3d commands = model_.allocate(forces);
     if ((commands.cwiseAbs().array() < model_.most_rps.array()).all()) {
       adapt(regressors, s);
     }

@@ -24,11 +24,11 @@ class Maker {
     plant_ = make_plant(vehicle, {});
   }
 
-  Cause thruster(vehicle::Configuration& to, std::size_t i, double share) const {
+  static Cause thruster(vehicle::Configuration& to, std::size_t i, double share) {
     to.effectiveness(static_cast<Eigen::Index>(i)) = 1.0 - share;
     return told(CauseKind::thruster, kFirstThruster + i, 1.0 - share);
   }
-  Cause drag(vehicle::Configuration& to, std::size_t axis, double share) const {
+  static Cause drag(vehicle::Configuration& to, std::size_t axis, double share) {
     to.damping_factor(kBody[axis]) = 1.0 + share;
     return told(CauseKind::drag, axis, 1.0 + share);
   }
@@ -50,15 +50,15 @@ class Maker {
     to.pull_position_m.x() = -0.5;
     return told(CauseKind::force, 1, -force / plant_.mass(1, 1));
   }
-  Cause scale(vehicle::Configuration& to, std::size_t axis, double share) const {
+  static Cause scale(vehicle::Configuration& to, std::size_t axis, double share) {
     to.sensors.scale(static_cast<Eigen::Index>(axis)) = 1.0 + share;
     return told(CauseKind::sensor_scale, axis, 1.0 + share);
   }
-  Cause bias(vehicle::Configuration& to, std::size_t axis, double share) const {
+  static Cause bias(vehicle::Configuration& to, std::size_t axis, double share) {
     to.sensors.bias(static_cast<Eigen::Index>(axis)) = share * kBiasUnits[axis];
     return told(CauseKind::sensor_bias, axis, share * kBiasUnits[axis]);
   }
-  Cause frozen(vehicle::Configuration& to, std::size_t axis) const {
+  static Cause frozen(vehicle::Configuration& to, std::size_t axis) {
     to.sensors.frozen(static_cast<Eigen::Index>(axis)) = 1.0;
     return told(CauseKind::frozen, axis, 0.0);
   }
@@ -91,10 +91,10 @@ std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& veh
   for (const int effect : {20, 40, 60, 80}) {
     const double share = 0.01 * effect;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto th = [&, i](To to) { return maker.thruster(to, i, share); };
-      const auto drag = [&, i](To to) { return maker.drag(to, i, share); };
-      const auto scale = [&, i](To to) { return maker.scale(to, i, share); };
-      const auto bias = [&, i](To to) { return maker.bias(to, i, share); };
+      const auto th = [share, i](To to) { return Maker::thruster(to, i, share); };
+      const auto drag = [share, i](To to) { return Maker::drag(to, i, share); };
+      const auto scale = [share, i](To to) { return Maker::scale(to, i, share); };
+      const auto bias = [share, i](To to) { return Maker::bias(to, i, share); };
       add(fmt::format("thruster th{}", i + 1), effect, false, th);
       add(fmt::format("drag {}", kAxisNames[i]), effect, false, drag);
       add(fmt::format("scale {}", kSensorNames[i]), effect, false, scale);
@@ -107,22 +107,20 @@ std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& veh
   }
   for (std::size_t i = 0; i < 3; ++i) {
     add(fmt::format("frozen {}", kSensorNames[i]), 0, false,
-        [&](To to) { return maker.frozen(to, i); });
+        [&](To to) { return Maker::frozen(to, i); });
   }
-  const auto th = [&](std::size_t i) {
-    return [&maker, i](To to) { return maker.thruster(to, i, 0.4); };
-  };
-  add("th1 and drag sway", 40, true, th(0), [&](To to) { return maker.drag(to, 1, 0.4); });
+  const auto th = [&](std::size_t i) { return [i](To to) { return Maker::thruster(to, i, 0.4); }; };
+  add("th1 and drag sway", 40, true, th(0), [&](To to) { return Maker::drag(to, 1, 0.4); });
   add("th2 and th3", 40, true, th(1), th(2));
   add("th3 and force surge", 40, true, th(2), [&](To to) { return maker.brake(to, 0.4); });
-  add("thruster th1 dead", 100, true, [&](To to) { return maker.thruster(to, 0, 1.0); });
+  add("thruster th1 dead", 100, true, [&](To to) { return Maker::thruster(to, 0, 1.0); });
   add(
-      "th1 80 % and th3 50 %", 0, true, [&](To to) { return maker.thruster(to, 0, 0.8); },
-      [&](To to) { return maker.thruster(to, 2, 0.5); });
+      "th1 80 % and th3 50 %", 0, true, [&](To to) { return Maker::thruster(to, 0, 0.8); },
+      [&](To to) { return Maker::thruster(to, 2, 0.5); });
   add(
-      "th1 and th2 dead", 100, true, [&](To to) { return maker.thruster(to, 0, 1.0); },
-      [&](To to) { return maker.thruster(to, 1, 1.0); });
-  add("th1 and bias r", 40, true, th(0), [&](To to) { return maker.bias(to, 2, 0.4); });
+      "th1 and th2 dead", 100, true, [&](To to) { return Maker::thruster(to, 0, 1.0); },
+      [&](To to) { return Maker::thruster(to, 1, 1.0); });
+  add("th1 and bias r", 40, true, th(0), [&](To to) { return Maker::bias(to, 2, 0.4); });
   return cases;
 }
 

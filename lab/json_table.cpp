@@ -26,7 +26,7 @@ std::string count_text(double value) {
   return chart::grouped(static_cast<std::int64_t>(value));
 }
 
-JsonColumn column(std::string head, std::string pointer, NumberText text) {
+JsonColumn column(std::string head, const std::string& pointer, const NumberText& text) {
   return {std::move(head), [at = file::Json::json_pointer(pointer), text](const file::Json& row) {
             if (!row.contains(at)) {
               return std::string();

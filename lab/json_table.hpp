@@ -25,7 +25,8 @@ struct JsonColumn {
 
 /// The column of the value at a JSON pointer: a text, a number, or the median of a list of numbers.
 /// The cell of a row without the value is empty.
-JsonColumn column(std::string head, std::string pointer, NumberText text = chart::decimal);
+JsonColumn column(std::string head, const std::string& pointer,
+                  const NumberText& text = chart::decimal);
 
 /// The columns median, p99, p99.9 and max of times in µs.
 std::vector<JsonColumn> spread_columns(const std::string& pointer);

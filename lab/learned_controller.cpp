@@ -58,8 +58,7 @@ class LearnedController final : public Controller {
     trust_ += kControlPeriodS / kTrustS * ((believed_ ? 1.0 : 0.0) - trust_);
     correct(trust_ * (reallocation_.forces(solved) - reallocation_.forces(start)) -
             (1.0 - trust_) * observed_);
-    const Eigen::Vector3d commands =
-        reallocation_.allocate(reallocation_.forces(start) + correction_);
+    Eigen::Vector3d commands = reallocation_.allocate(reallocation_.forces(start) + correction_);
     if (at_limit(commands)) {
       pid_.saturated();
     }

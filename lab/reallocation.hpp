@@ -16,7 +16,7 @@ namespace kelpie::lab {
 /// thrust, then by Authority::allocate() for what is left.
 class Reallocation {
  public:
-  explicit Reallocation(const NominalModel& nominal) : nominal_(nominal) {}
+  explicit Reallocation(NominalModel nominal) : nominal_(std::move(nominal)) {}
 
   /// Asks a diagnosis of inputs u, v, r and three rotor speeds, now and then; once per period.
   /// Returns the force of `rotors_rps` that has just been found to be missing, else 0.

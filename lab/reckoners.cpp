@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "kelpie/model/open_loop.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -17,7 +18,7 @@ constexpr double kRenewS = 10.0;
 
 class NominalReckoner final : public Reckoner {
  public:
-  explicit NominalReckoner(const NominalModel& nominal) : nominal_(nominal) {}
+  explicit NominalReckoner(NominalModel nominal) : nominal_(std::move(nominal)) {}
 
  protected:
   Eigen::Vector2d velocity(const Sensed& sensed) override {

@@ -56,7 +56,7 @@ std::vector<std::string> prose_of(const path& page) {
   std::vector<std::string> prose;
   bool is_code = false;
   for (const std::string& line : house_test::lines_of(kRoot / page)) {
-    is_code ^= line.starts_with("```");
+    is_code = is_code != line.starts_with("```");
     const bool has_code = line.find('`') != std::string::npos;
     prose.push_back(is_code ? "" : has_code ? std::regex_replace(line, kCode, "X") : line);
   }
@@ -102,7 +102,7 @@ std::set<std::string> anchors_of(const path& page) {
   std::map<std::string, int> seen;
   bool is_code = false;
   for (const std::string& line : house_test::lines_of(kRoot / page)) {
-    is_code ^= line.starts_with("```");
+    is_code = is_code != line.starts_with("```");
     if (const std::size_t level = line.find_first_not_of('#');
         !is_code && level != std::string::npos && level > 0 && line[level] == ' ') {
       const std::string anchor = anchor_of(line.substr(level + 1));

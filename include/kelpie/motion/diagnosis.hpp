@@ -196,7 +196,7 @@ class Authority {
  public:
   /// Throws InputError (diagnosis) before the diagnosis is ready, and (ranges) on an input that is
   /// no thruster, a number that isn't finite, and a range without 0. Allocates.
-  Authority(const Diagnosis& diagnosis, std::vector<CommandRange> ranges);
+  Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>& ranges);
 
   const std::vector<ThrusterEffect>& thrusters() const { return thrusters_; }
   const std::vector<AxisAuthority>& axes() const { return axes_; }

@@ -88,7 +88,7 @@ AlignmentSearch::Scored AlignmentSearch::scored(AlignmentGuess guess) {
 }
 
 // The simplest guess within one standard error of the best, if clearly better.
-AlignmentSearch::Scored AlignmentSearch::step(Scored from, const Guesses& guesses) {
+AlignmentSearch::Scored AlignmentSearch::step(const Scored& from, const Guesses& guesses) {
   std::vector<Scored> tried{from};
   for (const AlignmentGuess& guess : guesses) {
     if (std::ranges::find(tried, guess, &Scored::guess) == tried.end()) {
@@ -124,7 +124,7 @@ AlignmentSearch::Scored AlignmentSearch::neutral(Scored from) {
     return from;
   }
   const AlignmentGuess usual = all;
-  from = step(std::move(from), {usual});
+  from = step(from, {usual});
   for (std::size_t k = 0; k < range_.size() && from.guess != usual; ++k) {
     from = step(from, {with_one(from.guess, k, [&](Actuator& actuator) {
                   actuator.neutral = usual.actuators[k].neutral;
@@ -178,7 +178,7 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
   for (const double lag_s : lags_s_) {
     guesses.push_back(with([&](Actuator& changed) { changed.lag_s = lag_s; }));
   }
-  from = step(std::move(from), guesses);
+  from = step(from, guesses);
 
   // Part of a lag may have been a rate or a delay.
   const std::vector<double> lags_s{actuator().lag_s, 0.5 * actuator().lag_s, 0.0};
@@ -192,7 +192,7 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
       }));
     }
   }
-  from = step(std::move(from), guesses);
+  from = step(from, guesses);
 
   guesses.clear();
   double delay_s = 0.5 / rate_hz_;
@@ -205,7 +205,7 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
     }
     delay_s *= 2.0;
   }
-  return step(std::move(from), guesses);
+  return step(from, guesses);
 }
 
 AlignmentSearch::Scored AlignmentSearch::refined(Scored from) {

@@ -26,7 +26,7 @@ class AlignmentSearch {
   using Guesses = std::vector<AlignmentGuess>;  // the simplest first
 
   Scored scored(AlignmentGuess guess);
-  Scored step(Scored from, const Guesses& guesses);
+  Scored step(const Scored& from, const Guesses& guesses);
   Scored descend(Scored from, const Guesses& guesses);
   Scored neutral(Scored from);
   Scored shifted(const Scored& from);

@@ -53,7 +53,7 @@ struct ChangeStart {
   void expect_all_causes();
 
   /// One cause alone is believed, with this size and variance.
-  void expect_cause(std::size_t cause, double size, double variance);
+  void expect_cause(std::size_t cause, double believed, double variance);
 
   /// Adds the target y of one axis at one row: the evidence, then a Kalman update of all sizes.
   /// `without`: the error of the vehicle without a change. `spread`: variance of an error over the

@@ -156,11 +156,11 @@ std::vector<Eigen::MatrixXd> CurrentFit::slopes(const Eigen::VectorXd& current, 
         kWaterFit.difference_m_s;
     for (Eigen::Index row = 0; row < x_.cols(); ++row) {
       const auto [knot, beyond] = knot_at(t_[row], t_[0], t_[t_.size() - 1], knots);
-      for (Eigen::Index target = 0; target < y_.rows(); ++target) {
-        Eigen::MatrixXd& slope = slopes[static_cast<std::size_t>(target)];
-        slope(row, 2 * knot + component) = (1.0 - beyond) * change(target, row);
+      for (Eigen::Index axis = 0; axis < y_.rows(); ++axis) {
+        Eigen::MatrixXd& slope = slopes[static_cast<std::size_t>(axis)];
+        slope(row, 2 * knot + component) = (1.0 - beyond) * change(axis, row);
         if (beyond > 0.0) {
-          slope(row, 2 * (knot + 1) + component) = beyond * change(target, row);
+          slope(row, 2 * (knot + 1) + component) = beyond * change(axis, row);
         }
       }
     }

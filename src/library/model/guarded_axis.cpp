@@ -361,7 +361,7 @@ void GuardedAxis::look(double t) {
 
 // A slow vehicle may stay in a small part of its scale; an axis in a scale of garbage explains
 // nothing besides.
-bool GuardedAxis::too_large(const DynamicsAxis& axis, const ThinnedRows& rows) const {
+bool GuardedAxis::too_large(const DynamicsAxis& axis, const ThinnedRows& rows) {
   const std::size_t half = rows.size() / 2;
   const std::size_t samples = rows.size() - half;
   if (axis.scaling() == nullptr || samples < kGuard.least_half || !tiny_in(*axis.scaling(), rows)) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/model/stored_past_model.hpp"
 #include "model/dynamics_axis.hpp"
 #include "model/thinned_rows.hpp"
 
@@ -139,7 +140,7 @@ class GuardedAxis final : public OnlineRegressor {
   void return_to_former(double t);
   void feed_trusted(std::size_t first);
   void look(double t);
-  bool too_large(const DynamicsAxis& axis, const ThinnedRows& rows) const;
+  static bool too_large(const DynamicsAxis& axis, const ThinnedRows& rows);
   void feed();
 
   Arguments arguments_;

@@ -50,7 +50,7 @@ bool ScaleTracker::any_far(std::span<const double> x, bool but_held) const {
     const bool is_far =
         whitening == 0.0 ? x[i] != input.mean[i] : std::abs(as_span(z)[i]) > kScaleTuning.far;
     const bool held = whitening == 0.0 || 1.0 < kScaleTuning.held * largest_[i] * whitening;
-    if (is_far && !(but_held && held && std::abs(x[i]) <= kScaleTuning.beyond * largest_[i])) {
+    if (is_far && (!but_held || !held || std::abs(x[i]) > kScaleTuning.beyond * largest_[i])) {
       return true;
     }
   }
@@ -237,7 +237,7 @@ std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs) {
     for (std::size_t i = 0; i < plausible.size(); ++i) {
       const bool far = std::abs(value(i, k) - median) > most;
       plausible[i] =
-          plausible[i] && !(far && std::abs(value(i, k)) > kScaleTuning.beyond * largest);
+          plausible[i] && (!far || std::abs(value(i, k)) <= kScaleTuning.beyond * largest);
     }
   }
   return plausible;

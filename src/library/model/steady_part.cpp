@@ -177,7 +177,7 @@ void SteadyPart::break_off() {
 
 // The samples of a step become one.
 void SteadyPart::close_step(const Accelerations& learned) {
-  const double samples = static_cast<double>(count_);
+  const auto samples = static_cast<double>(count_);
   as_vector(x_) = as_vector(x_sum_) / samples;
   as_vector(y_) = as_vector(y_sum_) / samples;
   const double now = begin_s_ + t_sum_ / samples;
@@ -209,7 +209,7 @@ void SteadyPart::learn_step(double step_s) {
   slide(window_, keep * keep, step_s);
   slide(twice_, keep, step_s);
   fit_.add(window_.phi, window_.y);
-  const double rows = static_cast<double>(fit_.rows());
+  const auto rows = static_cast<double>(fit_.rows());
   as_vector(raw_).array() += (as_vector(phi_).array().square() - as_vector(raw_).array()) / rows;
   if (known()) {
     match_window();

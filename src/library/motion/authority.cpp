@@ -71,7 +71,7 @@ double AxisAuthority::left() const {
   return nominal > 0.0 ? (most - least) / nominal : 1.0;
 }
 
-Authority::Authority(const Diagnosis& diagnosis, std::vector<CommandRange> ranges) {
+Authority::Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>& ranges) {
   require(diagnosis.knows_thrust(), "diagnosis",
           "knows too little of the vehicle so far: it takes some minutes of driving");
   for (const CommandRange& range : ranges) {

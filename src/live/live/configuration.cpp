@@ -31,7 +31,7 @@ constexpr double kLeastThrust = 1e-12;  // N per square of a unit, such as µs
 double number_between(const file::TomlNode& value, double least, double most,
                       const std::string& unit) {
   const double number = value.number("a number of " + unit);
-  if (!(least <= number && number <= most)) {
+  if (!(number >= least) || number > most) {
     value.refuse(fmt::format("is out of range; it has to be from {} to {} {}", least, most, unit));
   }
   return number;

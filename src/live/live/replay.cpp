@@ -17,7 +17,7 @@ double parse_speed(const std::string& text) {
   if (text == "max") {
     return std::numeric_limits<double>::infinity();
   }
-  if (!parse_number(text, speed) || !(speed >= 0.001 && speed <= 1e6)) {
+  if (!parse_number(text, speed) || !(speed >= 0.001) || speed > 1e6) {
     throw InputError("--speed", "'" + text + "' has to be a number from 0.001 to 1e+06, or max");
   }
   return speed;

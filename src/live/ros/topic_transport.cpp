@@ -160,7 +160,7 @@ void TopicTransport::subscribe(Wanted& wanted, const std::string& type) {
   topics_.push_back({.name = wanted.name, .type = type});
 }
 
-std::string TopicTransport::fault_of(const Wanted& wanted) const {
+std::string TopicTransport::fault_of(const Wanted& wanted) {
   if (!wanted.failure.empty()) {
     return wanted.failure;
   }

@@ -58,7 +58,7 @@ class TopicTransport final : public live::Transport {
   void subscribe(Wanted& wanted, const std::string& type);
   bool is_current(std::size_t topic) const;
   bool all_connected() const;
-  std::string fault_of(const Wanted& wanted) const;
+  static std::string fault_of(const Wanted& wanted);
   void refuse_long_commands();
   void execute(const std::vector<std::byte>& cdr);
   void allocate(const std::vector<std::byte>& cdr);

@@ -131,7 +131,7 @@ class Server::Http {
 
   void run();
   void tick();
-  void dismiss(Guest& guest);
+  static void dismiss(Guest& guest);
   void greet(MHD_Connection* connection, void** guest);
   std::optional<Answer> refused(MHD_Connection* connection, std::string_view path,
                                 std::string_view method) const;

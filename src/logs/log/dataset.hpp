@@ -162,13 +162,17 @@ void convert_units(Table& table, const std::map<std::string, std::string>& units
 /// Names of columns that are taken as time.
 inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
 
+/// The column of the time of a table's rows: the given one; without a column and a rate the first
+/// of kTimeNames, or else the first column of time stamps; "" for none.
+std::string usual_time(const Table& table, const Roles& given);
+
 /// Guesses roles from the names: targets are "Xdot", "dX" and "X_dot" for a column X other than
-/// time; time (unless a rate is given) is the first of kTimeNames, or else the first column of time
-/// stamps; the configuration is "conf" or "configuration". Left out are "split", columns of words,
-/// further time stamps, "X_true" for a column X, ignored columns, constants, counters, positions,
-/// headings, batteries, and columns equal to an earlier input; the remaining columns are inputs,
-/// velocities (velocity_axis()) first. Roles in `given` are kept. Throws InputError on an ignored
-/// column that is missing or has a role, no target, no input, or more inputs than a model takes.
+/// time; the time is usual_time(); the configuration is "conf" or "configuration". Left out are
+/// "split", columns of words, further time stamps, "X_true" for a column X, ignored columns,
+/// constants, counters, positions, headings, batteries, and columns equal to an earlier input; the
+/// remaining columns are inputs, velocities (velocity_axis()) first. Roles in `given` are kept.
+/// Throws InputError on an ignored column that is missing or has a role, no target, no input, or
+/// more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
 
 /// The column of the vehicle's heading for the estimate of a current: psi, yaw, heading, hdg or

@@ -221,9 +221,6 @@ Roles guess_other_roles(const Table& table, const Header& header, const Roles& g
   Roles roles = given;
   for (std::size_t column = 0; column < table.names.size(); ++column) {
     const std::string& name = table.names[column];
-    if (roles.time.empty() && roles.rate_hz == 0.0 && is_among(name, kTimeNames)) {
-      roles.time = name;
-    }
     if (roles.configuration.empty() && is_among(name, kConfigurations)) {
       roles.configuration = name;
     }
@@ -231,15 +228,28 @@ Roles guess_other_roles(const Table& table, const Header& header, const Roles& g
       roles.targets.push_back(name);
     }
   }
-  const auto stamps = std::ranges::find_if(
-      table.names, [&](const std::string& name) { return header.is_stamp(name); });
-  if (roles.time.empty() && roles.rate_hz == 0.0 && stamps != table.names.end()) {
-    roles.time = *stamps;
-  }
+  roles.time = usual_time(table, given);
   return roles;
 }
 
 }  // namespace
+
+std::string usual_time(const Table& table, const Roles& given) {
+  if (!given.time.empty() || given.rate_hz > 0.0) {
+    return given.time;
+  }
+  for (const std::string& name : table.names) {
+    if (is_among(name, kTimeNames)) {
+      return name;
+    }
+  }
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (table.is_time(column)) {
+      return table.names[column];
+    }
+  }
+  return {};
+}
 
 Roles guess_roles(const Table& table, const Roles& given) {
   check_ignored(table, given);

@@ -117,7 +117,7 @@ std::string columns(const std::string& left, const std::string& right) {
 std::string command_lines(const Facts& commands) {
   std::string items;
   for (const auto& [command, purpose] : commands) {
-    items += "<li><div class=\"scroll\" tabindex=\"0\"><code>" + escape_markup(command) +
+    items += R"(<li><div class="scroll" tabindex="0"><code>)" + escape_markup(command) +
              "</code></div> " + escape_markup(purpose) + "</li>\n";
   }
   return items.empty() ? "" : "<ul class=\"next\">\n" + items + "</ul>\n";
@@ -160,7 +160,7 @@ std::string interval_table(const std::vector<IntervalRow>& rows) {
     const bool is_known = row.value != 0.0 && std::isfinite(row.low) && std::isfinite(row.high);
     const std::string bar =
         is_known
-            ? fmt::format("<span class=\"bar\"><i style=\"left:{:.1f}%;width:{:.1f}%\"></i></span>",
+            ? fmt::format(R"(<span class="bar"><i style="left:{:.1f}%;width:{:.1f}%"></i></span>)",
                           from, std::max(to - from, 1.0))
             : "";
     body += fmt::format(

@@ -208,7 +208,7 @@ std::string unit_text(std::string_view unit) {
     const bool divides = exponent.starts_with('-');
     exponent.remove_prefix(divides ? 1 : 0);
     const bool is_raised = exponent.size() == 1 && is_digit(exponent[0]);
-    if (sign == 0 || (sign < power.size() && !is_raised) || power.find('/') != power.npos) {
+    if (sign == 0 || (sign < power.size() && !is_raised) || power.find('/') != std::string::npos) {
       return with_raised_digits(unit);
     }
     std::string& side = divides ? below : above;

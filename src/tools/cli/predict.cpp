@@ -6,7 +6,6 @@
 #include <iterator>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -59,22 +58,21 @@ struct NewColumn {
   std::vector<double> values;  // NaN in rows that aren't seen
 };
 
-// The column that tells the time: the one named, else one whose name says so; none.
-std::optional<std::size_t> time_column(const log::Table& table, const log::Roles& roles) {
-  if (!roles.time.empty()) {
-    const std::size_t column = table.find(roles.time);
-    table.require_numbers(column);
-    return column;
-  }
-  for (const std::string_view name : log::kTimeNames) {
-    const auto found = std::ranges::find(table.names, name);
-    const auto column = static_cast<std::size_t>(found - table.names.begin());
-    if (roles.rate_hz == 0.0 && found != table.names.end() && !table.is_of_words(column)) {
-      table.require_numbers(column);
-      return column;
+// Of the column `time`; without one, rows come at an even rate.
+std::vector<double> row_times_s(const log::Table& table, const std::string& time, double rate_hz) {
+  std::vector<double> times_s(table.rows());
+  if (time.empty()) {
+    for (std::size_t row = 0; row < times_s.size(); ++row) {
+      times_s[row] = static_cast<double>(row) / rate_hz;
     }
+    return times_s;
   }
-  return std::nullopt;
+  const std::size_t column = table.find(time);
+  table.require_numbers(column);
+  const double unit_s = table.seconds_per_unit(column);
+  std::ranges::transform(table.columns[column], times_s.begin(),
+                         [&](double value) { return unit_s * value; });
+  return times_s;
 }
 
 // The rows with finite inputs, as the model is to see them.
@@ -87,8 +85,8 @@ struct SeenRows {
 SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log::Roles& roles) {
   std::vector<std::size_t> columns = input_columns(model, table);
   const bool by_time = !model.alignment.none();
-  const std::optional<std::size_t> time = by_time ? time_column(table, roles) : std::nullopt;
-  if (!time && roles.rate_hz == 0.0 && !model.alignment.shifts() &&
+  const std::string time = by_time ? log::usual_time(table, roles) : "";
+  if (time.empty() && roles.rate_hz == 0.0 && !model.alignment.shifts() &&
       std::ranges::any_of(model.alignment.actuators, &Actuator::takes_time)) {
     throw InputError({.file = table.source, .line = 0, .field = {}},
                      "has no column of time, and the model's actuators take time; name one with "
@@ -97,6 +95,7 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
   const double rate_hz = roles.rate_hz > 0.0        ? roles.rate_hz
                          : model.alignment.shifts() ? model.alignment.rate_hz()
                                                     : 1.0;
+  const std::vector<double> times_s = row_times_s(table, time, rate_hz);
   SeenRows seen;
   seen.data.source = table.source;
   seen.data.input_names = model.input_names;
@@ -112,7 +111,7 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::ranges::transform(columns, x.begin(),
                            [&](std::size_t column) { return table.columns[column][row]; });
-    const double t = time ? table.columns[*time][row] : static_cast<double>(row) / rate_hz;
+    const double t = times_s[row];
     if (std::isfinite(t) && std::ranges::all_of(x, [](double v) { return std::isfinite(v); })) {
       seen.data.inputs.insert(seen.data.inputs.end(), x.begin(),
                               x.begin() + static_cast<std::ptrdiff_t>(inputs));
@@ -124,7 +123,7 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
       seen.places.push_back(row);
     }
   }
-  const double measured = time ? log::measured_rate(seen.data.times_s) : rate_hz;
+  const double measured = time.empty() ? rate_hz : log::measured_rate(seen.data.times_s);
   seen.data.rate_hz = measured > 0.0 ? measured : rate_hz;
   seen.data = study::aligned(std::move(seen.data), model.alignment);
   return seen;

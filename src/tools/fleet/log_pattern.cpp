@@ -50,6 +50,7 @@ std::string regex_of(const std::string& text) {
 
 std::vector<fs::path> globbed(const std::string& pattern) {
   glob_t found = {};
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): patterns are read before threads start
   const int result = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
   std::vector<fs::path> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   ::globfree(&found);

@@ -207,7 +207,7 @@ std::filesystem::path Plan::folder() const {
 }
 
 std::string Plan::identity() const {
-  file::Json json = {
+  const file::Json json = {
       {"name", name},
       {"sources", file::list(sources, [](const Source& one) { return one.identity; })},
       {"splits", file::list(splits,

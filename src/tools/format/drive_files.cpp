@@ -106,7 +106,7 @@ std::string drive_json(const PlannedDrive& drive) {
 bool has_pulses(const PlannedDrive& drive) {
   for (std::size_t i = 0; i < drive.thrusters.size(); ++i) {
     const double rest = drive.command(i, 0.0);
-    if (!(rest >= kLeastRest && rest <= kMostRest) || motor_number(drive.thrusters[i]) == 0) {
+    if (rest < kLeastRest || rest > kMostRest || motor_number(drive.thrusters[i]) == 0) {
       return false;
     }
   }

@@ -288,7 +288,7 @@ class ModelCode {
   std::string shift() const {
     const Alignment& shift = model_.alignment;
     const Current& water = shift.water;
-    const std::string current =
+    std::string current =
         water.none() ? ""
                      : fmt::format(
                            " * {} and {} are velocities through the water, and accelerations are "

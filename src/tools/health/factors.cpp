@@ -34,7 +34,7 @@ DriveInputs inputs_of(const log::Dataset& data, const DriveColumns& columns) {
        {&columns.density, &inputs.density},
        {&columns.depth, &inputs.depth}}};
   for (std::size_t i = 0; i < data.input_names.size(); ++i) {
-    const auto found = std::ranges::find_if(
+    const auto* const found = std::ranges::find_if(
         slow, [&](const auto& one) { return *one.first == data.input_names[i]; });
     if (found != slow.end()) {
       *found->second = i;

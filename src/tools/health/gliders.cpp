@@ -390,8 +390,8 @@ GliderColumns glider_columns(const std::vector<std::string>& pairs) {
   GliderColumns columns{.time = "time"};
   for (const std::string& pair : pairs) {
     const std::size_t equals = pair.find('=');
-    const auto known = std::ranges::find(kNames, pair.substr(0, equals),
-                                         [](const auto& one) { return std::string(one.first); });
+    const auto* const known = std::ranges::find(
+        kNames, pair.substr(0, equals), [](const auto& one) { return std::string(one.first); });
     std::vector<std::string> names;
     for (const auto& [name, member] : kNames) {
       names.emplace_back(name);

@@ -211,8 +211,9 @@ std::string comparison_table(const study::Comparison& comparison) {
 std::string comparison_html(const study::Comparison& comparison) {
   const study::StreamResult& kelpie = comparison.contests.front().stream;
   const std::string log = std::filesystem::path(kelpie.source).filename().string();
-  std::string opening = chart::paragraph("over", "kelpie beside simpler models on " + log) +
-                        advice_opening(comparison) + chart::html_table(ranked_view(comparison));
+  const std::string opening = chart::paragraph("over", "kelpie beside simpler models on " + log) +
+                              advice_opening(comparison) +
+                              chart::html_table(ranked_view(comparison));
   std::string advice;
   for (const std::string& paragraph : recommendation(comparison)) {
     advice += chart::paragraph("", paragraph);

@@ -96,7 +96,7 @@ chart::TextTable episodes_view(const HealthCard& card) {
       view.rows.back().push_back(value_text(table.quantities[k], table.estimates[i][k]));
     }
   }
-  view.notes.push_back(
+  view.notes.emplace_back(
       "Values with half of their 90 % intervals. Per cent: of the mean over all episodes.");
   if (first > 0) {
     view.notes.push_back(fmt::format("The last {} of {}; health.json has all.", kMostEpisodes,

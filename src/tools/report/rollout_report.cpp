@@ -141,7 +141,7 @@ std::string word_for(const std::string& state) {
                                                                 {'p', "roll rate"},
                                                                 {'q', "pitch rate"},
                                                                 {'r', "yaw rate"}}};
-  const auto found = std::ranges::find_if(
+  const auto* const found = std::ranges::find_if(
       kWords, [&](const auto& word) { return state.size() == 1 && state.front() == word.first; });
   return found == kWords.end() ? state : found->second;
 }

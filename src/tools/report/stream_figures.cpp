@@ -204,8 +204,9 @@ std::string name_of(const study::AxisResult& axis) {
   return chart::shortened(axis.name, chart::kLongestName);
 }
 
-chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description) {
-  chart::Figure figure(clock.axis(), std::move(y), description);
+chart::Figure figure_over_time(const Clock& clock, const chart::PlotAxis& y,
+                               const std::string& description) {
+  chart::Figure figure(clock.axis(), y, description);
   figure.link("stream");
   return figure;
 }

@@ -46,7 +46,8 @@ std::vector<chart::Point> over_looks(Clock clock, const study::AxisResult& axis,
 std::string name_of(const study::AxisResult& axis);
 
 /// A figure over the stream; those of a page share window and cursor.
-chart::Figure figure_over_time(Clock clock, chart::PlotAxis y, const std::string& description);
+chart::Figure figure_over_time(const Clock& clock, const chart::PlotAxis& y,
+                               const std::string& description);
 
 /// A change of the vehicle: another configuration in the log, or a detected change.
 struct Event {

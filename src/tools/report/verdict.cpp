@@ -183,7 +183,7 @@ bool is_poor(const study::StreamResult& result) {
 }
 
 std::string verdict_of(const study::AxisResult& axis) {
-  const std::string quality = quality_of(axis);
+  std::string quality = quality_of(axis);
   if (!(axis.r2_final > kTuning.clear_r2)) {
     return quality;
   }

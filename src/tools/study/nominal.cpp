@@ -47,8 +47,8 @@ class VehicleOnInputs {
         attitude_(find_attitude(data.input_names)),
         frame_(frame),
         neutral_(neutral) {
-    for (std::size_t i = 0; i < data.input_names.size(); ++i) {
-      axes_.push_back(velocity_axis(data.input_names[i]));
+    for (const std::string& name : data.input_names) {
+      axes_.push_back(velocity_axis(name));
     }
     std::vector<std::string> names;
     for (const vehicle::Thruster& thruster : vehicle.thrusters) {

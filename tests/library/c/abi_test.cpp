@@ -74,7 +74,7 @@ TEST(Abi, WhatTheLastReleaseDeclaredIsDeclaredStill) {
   std::vector<std::string> now = declarations();
   ASSERT_GT(now.size(), 50U);
   std::ranges::copy(sizes(), std::back_inserter(now));
-  if (std::getenv("KELPIE_RECORD_ABI") != nullptr) {
+  if (std::getenv("KELPIE_RECORD_ABI") != nullptr) {  // NOLINT(concurrency-mt-unsafe)
     std::ofstream record(kRecord);
     for (const std::string& line : now) {
       record << line << '\n';

@@ -63,7 +63,7 @@ TEST(SparseRegression, ALinearOneForgetsNothingInAnotherScale) {
     const auto learn = [&](int samples, bool rescaled) {
       for (int i = 0; i < samples; ++i) {
         std::vector<double> z = sample(random);
-        double y = 0.3 * z[2] - 0.2 + 0.01 * random.normal();
+        const double y = 0.3 * z[2] - 0.2 + 0.01 * random.normal();
         std::vector<double> other = z;
         other[2] *= kFactor;
         from_start.update(other, kGain * y + offset);

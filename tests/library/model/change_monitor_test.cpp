@@ -135,7 +135,7 @@ TEST(ChangeMonitor, TellsByHowMuchTheCoefficientsHaveChanged) {
 TEST(ChangeMonitor, RaisesNoAlarmInHoursOfColouredNoiseWithOutliers) {
   PlanarDrive drive;
   for (std::uint64_t part = 0; part < 12; ++part) {
-    drive.drive(10 + part, 5 * 900, 0.2);  // other commands every 15 minutes
+    drive.drive(10 + part, 4500, 0.2);  // other commands every 15 minutes
   }
   add_noise(drive, 0.2, 4);
   ChangeMonitor monitor = make_monitor();
@@ -147,7 +147,7 @@ TEST(ChangeMonitor, RaisesNoAlarmInHoursOfColouredNoiseWithOutliers) {
 class NamedCause : public ::testing::Test {
  protected:
   static constexpr double kStep = 0.2;
-  static constexpr std::size_t kBefore = 5 * 360;
+  static constexpr std::size_t kBefore = 1800;
   static constexpr std::size_t kNamed = kBefore + 50;
 
   Story watch_with(const Cause& cause, double strength) {
@@ -207,9 +207,9 @@ TEST_F(NamedCause, OfAnotherKindChangesNothing) {
 TEST(ChangeMonitor, WithdrawsAChangeThatPasses) {
   constexpr double kStep = 0.2;
   PlanarDrive drive;
-  drive.drive(1, 5 * 1200, kStep);
-  drive.drive(2, 5 * 40, kStep, 0.5);
-  drive.drive(3, 5 * 100, kStep);
+  drive.drive(1, 6000, kStep);
+  drive.drive(2, 200, kStep, 0.5);
+  drive.drive(3, 500, kStep);
   add_noise(drive, kStep, 3);
   ChangeMonitor monitor = make_monitor();
   const Story story = watch(monitor, drive);

@@ -165,7 +165,7 @@ class Seen {
   bool holds(const Vector& said) const {
     for (std::size_t k = 0; k < kAxes; ++k) {
       const double margin = 0.11 * (most_[k] - least_[k]);
-      if (!(said[k] >= least_[k] - margin && said[k] <= most_[k] + margin)) {
+      if (!(said[k] >= least_[k] - margin) || said[k] > most_[k] + margin) {
         return false;
       }
     }

@@ -113,7 +113,7 @@ TEST(Attitude, MovesWithTheAngularVelocities) {
     const auto gravity = [&](const std::vector<double>& x) {
       std::vector<double> phi(terms.size());
       terms.evaluate(x, phi);
-      const auto first = static_cast<std::ptrdiff_t>(terms.without_products() - 3);
+      const std::size_t first = terms.without_products() - 3;
       const double sign = names.size() == 7 ? 1.0 : -1.0;  // of sin θ
       return std::array{sign * phi[first], phi[first + 1], phi[first + 2]};
     };

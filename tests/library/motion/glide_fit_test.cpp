@@ -64,7 +64,7 @@ TEST(GlideFit, GlidesSteadilyAndFloatsAtTheSurface) {
     rows.ballast_ml.push_back(i < 20 ? -200.0 : 200.0);
     rows.depth_m.push_back(i < 30 ? 100.0 : 0.0);
   }
-  GlideParameters parameters = first_glide();
+  const GlideParameters parameters = first_glide();
   const GlideMotion motion = glide(rows, parameters);
   EXPECT_GT(motion.sinking[15], 0.1);
   EXPECT_NEAR(motion.sinking[15], -motion.sinking[29], 1e-3);

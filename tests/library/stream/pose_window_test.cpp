@@ -262,7 +262,7 @@ TEST(PoseWindow, CommandsAndStatesAreMeansWithTheSameWeights) {
 TEST(PoseWindow, ASilenceOrAMissingValueMakesNoRowOverIt) {
   const std::vector<Recorded> sources{
       {"z", [](double t) { return t > 8.0 && t < 11.0 ? kNaN : t; }}};
-  StreamPlan plan = plan_of(sources, {.position = {"", "", "z"}});
+  const StreamPlan plan = plan_of(sources, {.position = {"", "", "z"}});
   const Rows rows = rows_of(plan, sources);
   for (std::size_t row = 0; row < rows.times_s.size(); ++row) {
     const double t = rows.times_s[row];
@@ -295,8 +295,9 @@ TEST(PoseWindow, SaysWhichPoseIsNone) {
   EXPECT_EQ(refusal(kPlane), "");
   StreamPlan open = plan_of({{"z", {}}}, {.position = {"", "", "z"}});
   open.pose->half_s = 0.0;
-  EXPECT_NE(testing::message_of<InputError>([&] { SampleStream stream(open); }).find("window"),
-            std::string::npos);
+  EXPECT_NE(
+      testing::message_of<InputError>([&] { const SampleStream stream(open); }).find("window"),
+      std::string::npos);
 }
 
 }  // namespace

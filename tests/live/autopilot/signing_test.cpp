@@ -75,7 +75,6 @@ TEST(Signing, AnyChangeOfAFrameIsFound) {
   }
   Signing ours = signing();
   EXPECT_EQ(verdict(ours, written(1), kSignedAt), Verdict::absent);
-  mavlink::FrameWriter first(1);
   EXPECT_EQ(verdict(ours,
                     bytes_of_hex("fe1c0307091ed20400000000003f00000000000000c0"
                                  "000000000000000000000000bf69"),

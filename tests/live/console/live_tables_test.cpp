@@ -20,7 +20,7 @@ using testing::succeeded;
 
 // Exactly 10 Hz; the second and the third column are left out.
 std::string log_of(std::size_t rows, const std::string& head = "t,u,n,udot") {
-  std::string text = testing::little_log(rows);
+  const std::string text = testing::little_log(rows);
   return head + text.substr(text.find('\n'));
 }
 

@@ -38,7 +38,7 @@ class Vehicle final : public live::Transport {
       : topics_(std::move(topics)), messages_(std::move(messages)) {}
 
   const std::vector<bag::Topic>& topics() const override { return topics_; }
-  Got next(bag::Message& message, std::chrono::milliseconds) override {
+  Got next(bag::Message& message, std::chrono::milliseconds /*timeout*/) override {
     if (at_ == messages_.size()) {
       return Got::end;
     }
@@ -256,7 +256,7 @@ TEST_F(Live, ThreeMessagesAYearAheadCostAMoment) {
       if (message.topic < 2 && left > 0 && is_between(message, next_s, 1000)) {
         --left;
         next_s += apart_s;
-        set_stamp(message, stamp_of(message) + 365 * 86'400 * kSecond);
+        set_stamp(message, stamp_of(message) + std::int64_t{365} * 86'400 * kSecond);
       }
     }
     const live::Health health = run(messages);

@@ -40,7 +40,7 @@ class Messages final : public live::Transport {
 
   const std::vector<bag::Topic>& topics() const override { return topics_; }
   std::optional<log::Reach> reach() const override { return reach_; }
-  Got next(bag::Message& message, std::chrono::milliseconds) override {
+  Got next(bag::Message& message, std::chrono::milliseconds /*timeout*/) override {
     while (!reach_ && is_behind()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

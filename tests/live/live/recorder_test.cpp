@@ -9,6 +9,7 @@
 #include <csignal>
 #include <filesystem>
 #include <thread>
+#include <tuple>
 
 #include "bag/reader.hpp"
 #include "kelpie/core/random.hpp"
@@ -55,7 +56,7 @@ class FullDisk {
   }
   ~FullDisk() {
     ::setrlimit(RLIMIT_FSIZE, &limit_);
-    ::signal(SIGXFSZ, before_);
+    std::ignore = ::signal(SIGXFSZ, before_);
   }
   FullDisk(const FullDisk&) = delete;
   FullDisk(FullDisk&&) = delete;

@@ -82,7 +82,7 @@ class Vehicle final : public live::Transport {
   std::map<std::size_t, std::function<void()>> operator_does;
 
   const std::vector<bag::Topic>& topics() const override { return testing::mission_topics(); }
-  Got next(bag::Message& message, std::chrono::milliseconds) override {
+  Got next(bag::Message& message, std::chrono::milliseconds /*timeout*/) override {
     if (const auto does = operator_does.find(at_); does != operator_does.end()) {
       const std::function<void()> act = std::move(does->second);
       operator_does.erase(does);
@@ -140,7 +140,7 @@ class LiveRequests : public ::testing::Test {
                                                       {Request::freeze, "learning is frozen"},
                                                       {Request::resume, "learning goes on"},
                                                       {Request::reset, "the model begins anew"}};
-    const std::string said = kSaid.at(request);
+    const std::string& said = kSaid.at(request);
     vehicle_.operator_does[at] = [this, at, request, said, then = std::move(then)] {
       requests_.push(request);
       wait(at, said, then);
@@ -216,8 +216,10 @@ TEST_F(LiveRequests, WhileItIsFrozenOutputsHearOfAllSamples) {
     ask(vehicle_.middle(), Request::freeze);
     ask(vehicle_.late(), Request::resume);
     run();
+    // NOLINTBEGIN(misc-const-correctness): both change
     std::vector<bool> frozen;
     for (std::size_t i = 0; i < lines_->samples.size(); ++i) {
+      // NOLINTEND(misc-const-correctness)
       const SignalVerdict& sample = lines_->samples[i];
       if (i > 0) {
         EXPECT_NEAR(sample.t - lines_->samples[i - 1].t, 0.1, 1e-9) << align << " " << i;
@@ -249,8 +251,10 @@ TEST_F(LiveRequests, FrozenIsOnTheDiskAtOnce) {
 
 TEST_F(LiveRequests, ResumedItLearnsAgain) {
   prepare();
+  // NOLINTBEGIN(misc-const-correctness): both change
   std::vector<double> frozen;
   std::size_t learned = 0;
+  // NOLINTEND(misc-const-correctness)
   ask(vehicle_.middle(), Request::freeze);
   ask(vehicle_.late(), Request::resume, [&] {
     frozen = says();

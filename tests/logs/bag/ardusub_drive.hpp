@@ -102,7 +102,7 @@ class ArdusubDrive {
     for (int k = 0; k < static_cast<int>(20.0 * kEnd_s); ++k) {
       const double t = 0.05 * k;
       if (t == kArmed_s || t == kDisarmed_s) {
-        log.add(head(17)).add(stamp(t)).add(std::uint8_t{t == kArmed_s});
+        log.add(head(17)).add(stamp(t)).add(static_cast<std::uint8_t>(t == kArmed_s ? 1 : 0));
       }
       add_records(log, t, k);
       if (with_dvl && k % 2 == 0) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include "kelpie/core/error.hpp"
 #include "support.hpp"
@@ -49,7 +50,7 @@ TEST(Content, NoMoreIsReadThanAllowed) {
   const std::string why = ": is larger than 1 MB, the most that is read of a log";
   EXPECT_EQ(refusal(folder / "file"), (folder / "file").string() + why);
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  std::signal(SIGPIPE, SIG_IGN);
+  std::ignore = std::signal(SIGPIPE, SIG_IGN);
   std::thread writer([&] { std::ofstream(folder / "pipe") << large; });
   EXPECT_EQ(refusal(folder / "pipe"), (folder / "pipe").string() + why);
   writer.join();

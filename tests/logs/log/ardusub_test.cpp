@@ -190,7 +190,7 @@ TEST_F(Ardusub, VoltageOfAGroundStationComesWithTheTimesOfReception) {
 }
 
 TEST_F(Ardusub, ArmedOnlyWithoutArmedMessagesIsRefusedByName) {
-  testing::Tlog log = testing::small_tlog(100);
+  const testing::Tlog log = testing::small_tlog(100);
   testing::write_text(folder_ / "still.tlog", log.text());
   const std::string config =
       "[log]\nrate = 10\narmed_only = true\n[log.states]\nphi = \"ATTITUDE:roll\"\n"

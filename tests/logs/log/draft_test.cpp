@@ -136,7 +136,7 @@ TEST(Draft, PulsesThatNeverLeaveTheDeadBandAreTold) {
   const auto remarks = [](double reach_us) {
     log::Table table = table_of("t,u,v,r,pwm1,pwm2");
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      for (const std::size_t pwm : {4, 5}) {
+      for (const std::size_t pwm : {4U, 5U}) {
         table.columns[pwm][row] =
             1500.0 + std::round(reach_us * std::tanh(table.columns[pwm][row]));
       }

@@ -128,7 +128,7 @@ TEST_F(PoseConfig, DegreesTurnsAndMissingCellsAreNoMatter) {
   const std::string config = kPlane + "window = 1.5\n" + kCommands;
   const log::Log plain = read(truth.csv(0.0), config);
   const log::Log turned = read(truth.csv(0.0, 2.5), config);
-  std::string holes = truth.csv(0.0);  // every seventh x is missing, one line stands twice
+  const std::string holes = truth.csv(0.0);  // every seventh x is missing, one line stands twice
   std::size_t line = 0;
   std::string with_holes;
   for (std::size_t begin = 0; begin < holes.size();) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -59,9 +60,7 @@ class PoseLog {
       for (const double value :
            {one.t, std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y,
             std::remainder(one.psi + turn, 2.0 * 3.14159265358979323846), one.n, one.m}) {
-        char cell[32];
-        std::snprintf(cell, sizeof(cell), "%.9g,", value);
-        text += cell;
+        text += fmt::format("{:.9g},", value);
       }
       text.back() = '\n';
     }

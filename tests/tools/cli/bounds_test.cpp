@@ -50,7 +50,7 @@ TEST_F(Bounds, AWaitForAPipeIsSaidAndEndedByCtrlC) {
 }
 
 TEST_F(Bounds, AFewBytesDoNotUnpackToMuch) {
-  const gzFile file = ::gzopen((folder_ / "line.csv.gz").c_str(), "wb");
+  gzFile file = ::gzopen((folder_ / "line.csv.gz").c_str(), "wb");
   const std::string piece(1 << 20, 'a');
   for (int k = 0; k < 200; ++k) {
     ::gzwrite(file, piece.data(), static_cast<unsigned>(piece.size()));
@@ -101,7 +101,7 @@ derived = {udot = "d(u)"}
   expect("window = 61", "window: 61 is out of range; it has to be more than 0, up to 60");
   expect("gap = 1e9", "gap: 1e+09 is out of range");
   expect("lag = {n = -1e9}", "lag.n: -1e+09 is out of range");
-  expect("lever_arm = {velocity=[\"u\",\"u\",\"u\"], rates=[\"u\",\"u\",\"u\"], arm=[1e300,0,0]}",
+  expect(R"(lever_arm = {velocity=["u","u","u"], rates=["u","u","u"], arm=[1e300,0,0]})",
          "lever_arm.arm: 1e+300 is out of range");
 }
 

@@ -45,7 +45,7 @@ class CurrentOfALog : public testing::CommandTest {
     return nlohmann::json::parse(testing::content_of(folder_ / file));
   }
 
-  double r2(const std::string& out, int axis) {
+  double r2(const std::string& out, std::size_t axis) {
     return json(out + "/result.json")["axes"][axis]["r2"]["final"];
   }
 };

@@ -95,7 +95,7 @@ TEST_F(DraftCommand, WrongChecksumsAreToldInOneLineAndRefusedByStrict) {
   testing::Tlog log = testing::ArdusubDrive::tlog();
   log.bytes()[log.offsets()[500] + 20] ^= std::byte{0x55};
   write("drive.tlog", log.text());
-  Outcome outcome = testing::succeeded(run("inspect drive.tlog --json drive.json"));
+  const Outcome outcome = testing::succeeded(run("inspect drive.tlog --json drive.json"));
   EXPECT_NE(outcome.err.find("passed over: 1 message with a wrong checksum"), std::string::npos)
       << outcome.err;
   EXPECT_EQ(parsed("drive.json").at("passed_over").size(), 1U);

@@ -97,7 +97,7 @@ TEST_F(FirstHour, TheOrderOfColumnsAndColumnsBesideChangeNothing) {
                       std::to_string(0.01 * (row % 600)) + "," + std::to_string(16.0 - 1e-4 * row) +
                       "," + std::to_string(53.0 + 1e-6 * row);
     text += more;
-    for (const std::size_t column : {5, 6, 7, 2, 3, 4, 0, 8, 9, 10}) {
+    for (const std::size_t column : {5U, 6U, 7U, 2U, 3U, 4U, 0U, 8U, 9U, 10U}) {
       text += "," + cell[column];
     }
     text += "\n";

@@ -29,8 +29,8 @@ class Health : public testing::CommandTest {
     succeeded(run("simulate scenario.toml --out " + name));
   }
 
-  const nlohmann::json& change(const nlohmann::json& card, const std::string& quantity,
-                               const std::string& baseline = "deployment") const {
+  static const nlohmann::json& change(const nlohmann::json& card, const std::string& quantity,
+                                      const std::string& baseline = "deployment") {
     for (const nlohmann::json& one : card["changes"]) {
       if (one["quantity"] == quantity && one["baseline"] == baseline) {
         return one;

@@ -58,7 +58,7 @@ TEST_F(Inspect, TellsMistakesWithTheRemedyAndSucceeds) {
   std::istringstream rows(testing::little_log(1200));
   std::string text;
   std::string row;
-  for (int number = 0; std::getline(rows, row); ++number) {
+  while (std::getline(rows, row)) {
     double t = 0.0;
     double u = 0.0;
     double n = 0.0;

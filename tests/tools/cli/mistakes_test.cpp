@@ -73,7 +73,7 @@ std::string late_csv(std::size_t late) {
 
 std::string without_time() {
   std::string text;
-  std::string all = csv();
+  const std::string all = csv();
   for (std::size_t at = 0; at < all.size();) {
     const std::size_t end = all.find('\n', at);
     text += all.substr(all.find(',', at) + 1, end - all.find(',', at));

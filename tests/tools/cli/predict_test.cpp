@@ -97,6 +97,35 @@ TEST_F(Predict, ATimeWithAWordInItIsRefused) {
   testing::expect_refused(outcome, "inputs.csv:4: t: '-' is not a number");
 }
 
+TEST_F(Predict, TimesInMillisecondsAndTimeStampsAreTimes) {
+  auto model = parsed("out/model.json");
+  model["alignment"] = {{"shift_s", 0.2}, {"rows", 2}, {"commands", {"n"}}};
+  write_text(folder_ / "out" / "model.json", model.dump());
+  std::string seconds = "t,u,n\n";
+  std::string milliseconds = "t,u,n\n";
+  std::string stamps = "when,u,n\n";
+  for (int row = 0; row < 9; ++row) {
+    const std::string cells = fmt::format(",{},{}\n", 0.1 * row, 0.2 * row);
+    seconds += fmt::format("0.{}", row) + cells;
+    milliseconds += fmt::format("{}", 100 * row) + cells;
+    stamps += fmt::format("2026-05-01 12:00:00.{}", row) + cells;
+  }
+  write("s.csv", seconds);
+  write("ms.csv", milliseconds);
+  write("stamps.csv", stamps);
+  const auto predictions = [&](const std::string& log) {
+    testing::succeeded(predict(log));
+    const log::Table table = log::read_csv(folder_ / "p.csv");
+    std::vector<double> values = table.columns[table.find("udot_predicted")];
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    return values;
+  };
+  const std::vector<double> expected = predictions("s.csv");
+  EXPECT_EQ(expected.size(), 7);  // the last two have no command 0.2 s later
+  EXPECT_EQ(predictions("ms.csv --units t=ms"), expected);
+  EXPECT_EQ(predictions("stamps.csv"), expected);
+}
+
 TEST_F(Predict, RowsHeldOutAreJudgedApartFromThoseLearned) {
   const Outcome outcome = testing::succeeded(predict("log.csv"));
   const auto result = parsed("out/result.json");

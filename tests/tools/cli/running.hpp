@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace kelpie::testing {
@@ -30,7 +31,7 @@ class Running {
     list.push_back(nullptr);
     child_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
     if (child_ == 0) {
-      std::signal(SIGINT, SIG_DFL);                    // the shell of a background job ignores it
+      std::ignore = std::signal(SIGINT, SIG_DFL);      // the shell of a background job ignores it
       const int sink = ::open("/dev/null", O_WRONLY);  // NOLINT: POSIX is variadic
       if (::chdir(folder.c_str()) == 0 && ::dup2(sink, STDOUT_FILENO) >= 0) {
         ::execv(KELPIE_COMMAND, list.data());

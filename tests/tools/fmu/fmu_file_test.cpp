@@ -18,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "fmu/fmi2.hpp"
@@ -104,7 +105,7 @@ void keep_message(fmi2ComponentEnvironment /*environment*/, fmi2String /*instanc
   std::array<char, 512> text{};
   std::va_list values;
   va_start(values, format);
-  std::vsnprintf(text.data(), text.size(), format, values);
+  std::ignore = std::vsnprintf(text.data(), text.size(), format, values);
   va_end(values);
   last_message = text.data();
 }
@@ -121,7 +122,7 @@ class Host {
       std::ofstream(folder_ / part, std::ios::binary) << entry_of(file, part);
     }
     library_.reset(::dlopen((folder_ / "binaries/linux64/kelpie_vehicle.so").c_str(), RTLD_NOW));
-    EXPECT_NE(library_, nullptr) << ::dlerror();
+    EXPECT_NE(library_, nullptr) << ::dlerror();  // NOLINT(concurrency-mt-unsafe)
     xml_.Parse(description_.c_str());
     guid_ = xml_.RootElement()->Attribute("guid");
   }
@@ -302,7 +303,7 @@ TEST(Fmu, AStateKeptIsComeBackTo) {
   instance.start();
   instance.set(kThrust1, 0.7);
   instance.step(1.0);
-  const fmi2FMUstate kept = instance.keep();
+  fmi2FMUstate kept = instance.keep();
   instance.step(1.0);
   const double later = instance.get(kSurge);
   instance.set(kThrust1, -1.0);

@@ -386,7 +386,7 @@ TEST(LiveLibrary, ALearnerRefusesABlockThatIsNotItsOwn) {
   const Drive drive = testing::drive(3, 10);
   ModelSettings settings = ModelSettings::from_preset("default", 2);
   const auto layout = [&](const std::vector<std::string>& inputs) {
-    DynamicsModel learner(inputs, drive.targets, settings);
+    const DynamicsModel learner(inputs, drive.targets, settings);
     std::vector<Snapshot> capacity{learner.mechanisms(0).snapshot(),
                                    learner.mechanisms(1).snapshot()};
     return BlockLayout::of(inputs, drive.targets, learner.mechanisms(0).terms(), capacity, false);

@@ -214,7 +214,7 @@ std::string refusal(const nlohmann::json& json) {
 }
 
 TEST(ModelJson, UnitsAndDoubtAreKeptAndWrongOnesNamed) {
-  testing::TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const TrainedModel model = trained(drive(3, 200), "diagonal");
   const format::ModelInfo info{.units = {{"u", "m s^-1"}, {"udot", "m s^-2"}},
                                .doubt = "udot is in g"};

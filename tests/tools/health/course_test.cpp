@@ -95,8 +95,8 @@ TEST(Course, FewEpisodesAreNotJudged) {
       weekly(health::kTuning.fewest_episodes - 1, random, [](double day) { return day; });
   EXPECT_EQ(health::judge(few).kind, CourseKind::unknown);
   EXPECT_EQ(health::judge({}).kind, CourseKind::unknown);
-  Series same{.days = std::vector<double>(9, 3.0),
-              .estimates = std::vector<health::Estimate>(9, {1.0, 0.1})};
+  const Series same{.days = std::vector<double>(9, 3.0),
+                    .estimates = std::vector<health::Estimate>(9, {1.0, 0.1})};
   EXPECT_EQ(health::judge(same).kind, CourseKind::unknown);
 }
 

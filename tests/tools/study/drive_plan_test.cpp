@@ -90,7 +90,7 @@ DrivePlan plan_for(const ExpectedPlanarFit& expected, const DriveBounds& bounds)
 // factor of 2, and smaller than those of as long a wandering drive.
 TEST(DrivePlan, ExpectsTheErrorsOfTheFitAfterTheDrive) {
   double gain = 0.0;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     NoisyDrive drive(seed);
     drive.wander(90.0);
     const ExpectedPlanarFit expected(drive.rows());

@@ -76,7 +76,7 @@ TEST(SixAxes, MotorsPushAsArduSubsTableOfTheFrameSays) {
   const Eigen::Matrix<int, 8, 6> table{
       {0, 0, 1, 0, -1, 1},  {0, 0, -1, 0, -1, -1}, {0, 0, -1, 0, 1, 1}, {0, 0, 1, 0, 1, -1},
       {1, -1, 0, -1, 0, 0}, {-1, -1, 0, -1, 0, 0}, {1, 1, 0, -1, 0, 0}, {-1, 1, 0, -1, 0, 0}};
-  const auto sign = [](double x) { return (x > 1e-9) - (x < -1e-9); };
+  const auto sign = [](double x) { return x > 1e-9 ? 1 : x < -1e-9 ? -1 : 0; };
   const vehicle::ThrustAxes axes = vehicle::thrust_axes(heavy().thrusters);
   for (Eigen::Index i = 0; i < 8; ++i) {
     const bool is_vertical = i >= 4;
@@ -293,10 +293,11 @@ TEST(Pilot, AsksForTheWrenchOfItsWishes) {
   vehicle::VehicleParameters vehicle = heavy();
   vehicle.hold = {};
   vehicle.command_unit = vehicle::CommandUnit::share;
-  vehicle::ExcitationSettings settings{.mode = vehicle::ExcitationMode::prbs,
-                                       .shortest_period_s = 5.0,
-                                       .longest_period_s = 6.0,
-                                       .effort = (Vector6() << 20, 15, 10, 1, 2, 3).finished()};
+  const vehicle::ExcitationSettings settings{
+      .mode = vehicle::ExcitationMode::prbs,
+      .shortest_period_s = 5.0,
+      .longest_period_s = 6.0,
+      .effort = (Vector6() << 20, 15, 10, 1, 2, 3).finished()};
   vehicle::Pilot pilot(vehicle, settings, 1);
   const RotorSpeeds commands = pilot.advance(vehicle::State{}, vehicle::kTickS, 1.0);
   Vector6 wrench = Vector6::Zero();
