@@ -40,7 +40,7 @@ struct Hypothesis {
   VelocityFilter filter;
   Practice practice;
 
-  Hypothesis(const OpenLoop& model, DeadReckoningSettings settings, double current_m_s,
+  Hypothesis(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s,
              double wander)
       : filter(model, with(settings, current_m_s, wander)), practice(filter, settings.practice_s) {}
 

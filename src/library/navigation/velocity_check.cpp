@@ -67,7 +67,7 @@ VelocityCheck::Faults VelocityCheck::judge(std::span<const double> x, double t,
 VelocityFault VelocityCheck::judge_all(const VelocityFilter& filter, const Values& now,
                                        bool is_zero, double t) {
   const double lasted_s = t - stretch_s_;
-  const bool is_still = this->is_still(filter, now);
+  const bool is_still = VelocityCheck::is_still(filter, now);
   if (is_zero && contradicted_) {
     return VelocityFault::zero;
   }
@@ -99,7 +99,7 @@ bool VelocityCheck::is_one_frozen(VelocityFilter& filter, const Values& now, std
          rate > kCheck.sigmas * filter.model().error[state];
 }
 
-bool VelocityCheck::contradicts(const VelocityFilter& filter, const Values& now) const {
+bool VelocityCheck::contradicts(const VelocityFilter& filter, const Values& now) {
   for (std::size_t i = 0; i < states_of(filter); ++i) {
     const auto place = static_cast<Eigen::Index>(i);
     const double noise = filter.model().noise[i];
@@ -113,7 +113,7 @@ bool VelocityCheck::contradicts(const VelocityFilter& filter, const Values& now)
   return false;
 }
 
-bool VelocityCheck::is_still(const VelocityFilter& filter, const Values& now) const {
+bool VelocityCheck::is_still(const VelocityFilter& filter, const Values& now) {
   for (std::size_t i = 0; i < states_of(filter); ++i) {
     if (std::isfinite(now[i]) && filter.is_of_log(static_cast<Eigen::Index>(i)) &&
         std::abs(now[i]) > kCheck.sigmas * filter.model().noise[i]) {
@@ -123,7 +123,7 @@ bool VelocityCheck::is_still(const VelocityFilter& filter, const Values& now) co
   return true;
 }
 
-bool VelocityCheck::would_move(VelocityFilter& filter, const Values& now) const {
+bool VelocityCheck::would_move(VelocityFilter& filter, const Values& now) {
   const VelocityFilter::Vector rates = filter.expected_rates(now);
   for (std::size_t i = 0; i < states_of(filter); ++i) {
     if (std::isfinite(now[i]) && filter.is_of_log(static_cast<Eigen::Index>(i)) &&

@@ -23,9 +23,9 @@ class VelocityCheck {
  private:
   using Values = std::array<double, VelocityFilter::kMostVelocities>;
 
-  bool contradicts(const VelocityFilter& filter, const Values& now) const;
-  bool is_still(const VelocityFilter& filter, const Values& now) const;
-  bool would_move(VelocityFilter& filter, const Values& now) const;
+  static bool contradicts(const VelocityFilter& filter, const Values& now);
+  static bool is_still(const VelocityFilter& filter, const Values& now);
+  static bool would_move(VelocityFilter& filter, const Values& now);
   VelocityFault judge_all(const VelocityFilter& filter, const Values& now, bool is_zero, double t);
   bool is_one_frozen(VelocityFilter& filter, const Values& now, std::size_t state, double t) const;
   double longest_hold_s() const;

@@ -121,7 +121,8 @@ TEST_F(Predict, TimesInMillisecondsAndTimeStampsAreTimes) {
     return values;
   };
   const std::vector<double> expected = predictions("s.csv");
-  EXPECT_EQ(expected.size(), 7);  // the last two have no command 0.2 s later
+  EXPECT_EQ(expected.size(), 9U);
+  EXPECT_NE(predictions("ms.csv"), expected);  // as seconds
   EXPECT_EQ(predictions("ms.csv --units t=ms"), expected);
   EXPECT_EQ(predictions("stamps.csv"), expected);
 }
