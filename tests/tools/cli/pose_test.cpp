@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "cli/command.hpp"
+#include "kelpie/core/random.hpp"
 #include "log/pose_log.hpp"
 
 namespace kelpie::cli_pose_test {
@@ -44,6 +50,64 @@ TEST_F(Poses, AreLearnedWithoutAVelocityInTheLog) {
   testing::succeeded(run("learn log.csv --config c.toml --out one" + testing::kFewSamples));
   EXPECT_EQ(json("one/model.json")["axes"], json("out/model.json")["axes"]);
   EXPECT_NE(content("a.csv").find("udot"), std::string::npos);
+}
+
+// The simulated Dagon's log as poses at 5 Hz: velocities are integrated by the trapezoidal rule,
+// and noise is added. No velocity is left.
+std::string poses_of(const std::string& simulated, double noise_m) {
+  RandomStream random(3, "poses");
+  std::istringstream lines(simulated);
+  std::string line;
+  std::getline(lines, line);
+  std::string csv = "t,x,y,psi,th1,th2,th3\n";
+  double x = 0.0, y = 0.0, psi = 0.0, last_s = 0.0, last_u = 0.0, last_v = 0.0, last_r = 0.0;
+  for (int row = 1; std::getline(lines, line); ++row) {
+    double t = 0.0, u = 0.0, v = 0.0, r = 0.0, first = 0.0, second = 0.0, third = 0.0;
+    EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%*d,%lf,%lf,%lf,%lf,%lf,%lf", &t, &u, &v, &r, &first,
+                          &second, &third),
+              7);
+    const double half_s = 0.5 * (t - last_s);
+    const double before = psi;
+    psi += half_s * (last_r + r);
+    x += half_s * (last_u * std::cos(before) - last_v * std::sin(before) + u * std::cos(psi) -
+                   v * std::sin(psi));
+    y += half_s * (last_u * std::sin(before) + last_v * std::cos(before) + u * std::sin(psi) +
+                   v * std::cos(psi));
+    last_s = t, last_u = u, last_v = v, last_r = r;
+    if (row % 5 == 0) {
+      csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t,
+                         x + noise_m * random.normal(), y + noise_m * random.normal(),
+                         std::remainder(psi + 0.0035 * random.normal(), 6.283185307179586), first,
+                         second, third);
+    }
+  }
+  return csv;
+}
+
+TEST_F(Poses, TellTheVehiclesParametersWithoutAVelocity) {
+  write("s.toml", "vehicle = \"" KELPIE_SOURCE_DIR
+                  "/vehicles/dagon.toml\"\nrate_hz = 25.0\nnoise = \"none\"\n"
+                  "[[configurations]]\nname = \"nominal\"\n[[phases]]\nconfiguration = "
+                  "\"nominal\"\nduration_s = 900.0\n");
+  testing::succeeded(run("simulate s.toml --out simulated.csv"));
+  write("poses.csv", poses_of(content("simulated.csv"), 0.1));
+  const Outcome outcome =
+      testing::succeeded(run("identify poses.csv --pose x,y,psi --thrust th1=0.0262 --split none "
+                             "--json --out identified"));
+  std::map<std::string, double> value;
+  for (const auto& one : nlohmann::json::parse(outcome.out)["parameters"]) {
+    ASSERT_TRUE(one["value"].is_number()) << one;
+    value[one["name"]] = one["value"];
+  }
+  EXPECT_NEAR(value["th1.reverse"], 0.0200, 0.001);
+  EXPECT_NEAR(value["th2.forward"], 0.0262, 0.001);
+  EXPECT_NEAR(value["th3.forward"], 0.0364, 0.0015);
+  const auto drag = [&](const std::string& axis, double speed) {
+    return value[axis + "_linear_drag"] + speed * value[axis + "_quadratic_drag"];
+  };
+  EXPECT_NEAR(drag("surge", 0.09), 14.45, 0.05 * 14.45);
+  EXPECT_NEAR(drag("sway", 0.07), 19.13, 0.05 * 19.13);
+  EXPECT_NEAR(drag("yaw", 0.35), 1.65, 0.15 * 1.65);
 }
 
 TEST_F(Poses, AreRefusedWithWhatWouldBeRight) {
