@@ -108,10 +108,10 @@ double least_value(Index place, Index all, double value) {
   }
   const bool is_drag = place >= static_cast<Index>(PlanarPlace::linear_drag) &&
                        place < static_cast<Index>(PlanarPlace::constant_force);
+  const auto each = static_cast<Index>(PlanarPlace::per_thruster);
   const Index of_thruster = place - PathPlace::thruster(0);
-  const bool is_ratio =
-      of_thruster >= 0 && place + 3 < all &&
-      of_thruster % static_cast<Index>(PlanarPlace::per_thruster) == PathPlace::ratio;
+  const bool is_ratio = of_thruster >= 0 && of_thruster < all - PathPlace::count(0) &&
+                        of_thruster % each == PathPlace::ratio;
   return is_drag || is_ratio ? 0.0 : -kNotCounted;
 }
 

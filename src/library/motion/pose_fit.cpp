@@ -130,7 +130,8 @@ class PathStart {
     Places yaw = of_thrusters({PathPlace::moment});
     yaw.push_back(constant + 2);
     try_time_constants(yaw, {linear + 2}, {kNone, kNone, kMeasured});
-    yaw.insert(yaw.end(), {linear + 2, static_cast<Index>(PlanarPlace::quadratic_drag) + 2});
+    yaw.insert(yaw.end(), {linear + 2, static_cast<Index>(PlanarPlace::quadratic_drag) + 2,
+                           PathPlace::shift(thrusters_)});
     yaw.insert(yaw.end(), ratios_.begin(), ratios_.end());
     fit(yaw, {kNone, kNone, kMeasured});
 

@@ -37,7 +37,8 @@ struct PoseRows {
 ///    heading, times the sum of the residuals' autocorrelations; plus 0.3 % of the value, as
 ///    fit_planar().
 ///
-/// A constant current is estimated along and is not among the parameters. Headings may jump by full
+/// A constant current, and a shift of the speeds in time where ramps explain most, are estimated
+/// along and are not among the parameters. Headings may jump by full
 /// turns. PlanarFit::windows counts the pieces, `misfit` is the larger sum of autocorrelations,
 /// free_terms are empty.
 /// Throws InputError naming the undetermined masses or thrusts if rows or excitation are

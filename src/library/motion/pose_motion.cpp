@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "motion/tuning.hpp"
@@ -18,6 +19,12 @@ constexpr Index kYawInertia = PlanarPlace::yaw_inertia;
 constexpr Index kLinearDrag = PlanarPlace::linear_drag;
 constexpr Index kQuadraticDrag = PlanarPlace::quadratic_drag;
 constexpr Index kConstantForce = PlanarPlace::constant_force;
+
+// Speeds of the thrusters at a time, and their slopes [1/s].
+struct RowSpeeds {
+  Eigen::VectorXd value;
+  Eigen::VectorXd slope;
+};
 
 // The right-hand side with its derivatives.
 class PathEquation {
@@ -54,7 +61,7 @@ class PathEquation {
   }
 
   // d/dt of the derivatives S of a state: A S + B, with A = ∂f/∂s and B = ∂f/∂θ.
-  StateSlopes slopes(const PoseState& s, const StateSlopes& slopes, const Eigen::VectorXd& speeds) {
+  StateSlopes slopes(const PoseState& s, const StateSlopes& slopes, const RowSpeeds& speeds) {
     StateSlopes result = by_state(s) * slopes;
     by_parameters(s, speeds);
     const Index current = PathPlace::current(thrusters_);
@@ -112,7 +119,9 @@ class PathEquation {
   }
 
   // Of the forces; M's parameters multiply the acceleration, too.
-  void by_parameters(const PoseState& s, const Eigen::VectorXd& speeds) {
+  void by_parameters(const PoseState& s, const RowSpeeds& at_row) {
+    const Eigen::VectorXd& speeds = at_row.value;
+    const Index shift = PathPlace::shift(thrusters_);
     const auto [u, v, r] = std::array{s(3), s(4), s(5)};
     const Eigen::Vector3d nu = s.tail<3>();
     const Eigen::Vector3d moved = acceleration(s, speeds);
@@ -133,7 +142,11 @@ class PathEquation {
       by_parameter_(2, at + PathPlace::moment) = effect;
       by_parameter_.col(at + PathPlace::ratio) =
           std::min(0.0, speeds(i)) * std::abs(speeds(i)) * forward_force(at);
+      by_parameter_.col(shift) += 2.0 * std::abs(speeds(i)) * at_row.slope(i) *
+                                  (speeds(i) < 0.0 ? p_(at + PathPlace::ratio) : 1.0) *
+                                  forward_force(at);
     }
+    by_parameter_(2, shift) *= unit_(2);
     by_parameter_.row(2).segment(kLinearDrag, PathPlace::munk(thrusters_) - kLinearDrag) *=
         unit_(2);
     by_parameter_(2, PathPlace::munk(thrusters_)) = -sway_inertia_ * u * v;
@@ -148,17 +161,43 @@ class PathEquation {
   Eigen::Vector3d unit_;  // of forces: 1, 1, m33
 };
 
-// Speeds at a share of the step after a row.
-Eigen::VectorXd speeds_at(const PathPiece& piece, Index row, double share, BetweenRows between) {
-  switch (between) {
-    case BetweenRows::steps_after:
-      return piece.speeds.col(row);
-    case BetweenRows::steps_before:
-      return piece.speeds.col(row + 1);
-    case BetweenRows::ramps:
-      break;
+// Speeds at a share of the step after a row; ramps `shift_s` later, and constant beyond the piece.
+RowSpeeds speeds_at(const PathPiece& piece, Index row, double share, double shift_s,
+                    BetweenRows between) {
+  const double step_s = piece.times_s(row + 1) - piece.times_s(row);
+  if (between != BetweenRows::ramps) {
+    return {piece.speeds.col(between == BetweenRows::steps_after ? row : row + 1),
+            Eigen::VectorXd::Zero(piece.speeds.rows())};
   }
-  return (1.0 - share) * piece.speeds.col(row) + share * piece.speeds.col(row + 1);
+  const auto last = static_cast<double>(piece.times_s.size() - 1);
+  const double wanted = static_cast<double>(row) + share + shift_s / step_s;
+  const double place = std::clamp(wanted, 0.0, last);
+  const auto first = static_cast<Index>(std::min(std::floor(place), last - 1.0));
+  const Eigen::VectorXd rise = piece.speeds.col(first + 1) - piece.speeds.col(first);
+  return {piece.speeds.col(first) + (place - static_cast<double>(first)) * rise,
+          place == wanted ? Eigen::VectorXd(rise / step_s)
+                          : Eigen::VectorXd::Zero(piece.speeds.rows())};
+}
+
+// Runge-Kutta's step of order four, of the state and, if wanted, of its derivatives.
+void advance(PathEquation& equation, const std::array<RowSpeeds, 3>& speeds, double h, PoseState& s,
+             StateSlopes& by) {
+  const auto& [begin, middle, end] = speeds;
+  const PoseState k1 = equation.slope(s, begin.value);
+  const PoseState s2 = s + 0.5 * h * k1;
+  const PoseState k2 = equation.slope(s2, middle.value);
+  const PoseState s3 = s + 0.5 * h * k2;
+  const PoseState k3 = equation.slope(s3, middle.value);
+  const PoseState s4 = s + h * k3;
+  const PoseState k4 = equation.slope(s4, end.value);
+  if (by.cols() > 0) {
+    const StateSlopes b1 = equation.slopes(s, by, begin);
+    const StateSlopes b2 = equation.slopes(s2, by + 0.5 * h * b1, middle);
+    const StateSlopes b3 = equation.slopes(s3, by + 0.5 * h * b2, middle);
+    const StateSlopes b4 = equation.slopes(s4, by + h * b3, end);
+    by += h / 6.0 * (b1 + 2.0 * b2 + 2.0 * b3 + b4);
+  }
+  s += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
 }
 
 }  // namespace
@@ -171,6 +210,7 @@ PathStates drive_piece(const PathPiece& piece, const Eigen::VectorXd& parameters
   const Index columns = with_jacobian ? static_cast<Index>(sought.size()) + 6 : 0;
   PathStates path{.states = Eigen::MatrixXd(6, rows),
                   .jacobian = Eigen::MatrixXd(3 * rows, columns)};
+  const double shift_s = parameters(parameters.size() - 3);
   PoseState s = start;
   StateSlopes by = StateSlopes::Zero(6, columns);
   if (with_jacobian) {
@@ -188,26 +228,9 @@ PathStates drive_piece(const PathPiece& piece, const Eigen::VectorXd& parameters
     const double h = step_s / steps;
     for (int step = 0; step < steps; ++step) {
       const auto speeds = [&](double part) {
-        return speeds_at(piece, row, (step + part) / steps, between);
+        return speeds_at(piece, row, (step + part) / steps, shift_s, between);
       };
-      const Eigen::VectorXd begin = speeds(0.0);
-      const Eigen::VectorXd middle = speeds(0.5);
-      const Eigen::VectorXd end = speeds(1.0);
-      const PoseState k1 = equation.slope(s, begin);
-      const PoseState s2 = s + 0.5 * h * k1;
-      const PoseState k2 = equation.slope(s2, middle);
-      const PoseState s3 = s + 0.5 * h * k2;
-      const PoseState k3 = equation.slope(s3, middle);
-      const PoseState s4 = s + h * k3;
-      const PoseState k4 = equation.slope(s4, end);
-      if (with_jacobian) {
-        const StateSlopes b1 = equation.slopes(s, by, begin);
-        const StateSlopes b2 = equation.slopes(s2, by + 0.5 * h * b1, middle);
-        const StateSlopes b3 = equation.slopes(s3, by + 0.5 * h * b2, middle);
-        const StateSlopes b4 = equation.slopes(s4, by + h * b3, end);
-        by += h / 6.0 * (b1 + 2.0 * b2 + 2.0 * b3 + b4);
-      }
-      s += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+      advance(equation, {speeds(0.0), speeds(0.5), speeds(1.0)}, h, s, by);
     }
   }
   return path;

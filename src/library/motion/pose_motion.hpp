@@ -18,10 +18,11 @@ using StateSlopes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Places of the parameters of a path: PlanarPlace with m11 = 1, where a thruster has its forward
 /// force along surge in the place of `forward`, along sway in that of `angle`, the moment in that
-/// of `arm`, and the ratio of the reverse force in that of `reverse`; then an error of the Munk
-/// moment, as a share ε of m22 in (m11 − (1 + ε) m22) u v, which is 0; then the current in x and y
-/// [m/s]. A thruster's forces are linear there, so a first estimate needs no direction. Moments (of
-/// drag and thrusters, and the constant one) are divided by m33, and the place of m22 has
+/// of `arm`, and the ratio of the reverse force in that of `reverse`. Then come an error of the
+/// Munk moment, as a share ε of m22 in (m11 − (1 + ε) m22) u v, which is 0; a shift of the thruster
+/// speeds [s], taken so much later; and the current in x and y [m/s].
+/// A thruster's forces are linear there, so a first estimate needs no direction. Moments (of drag
+/// and thrusters, and the constant one) are divided by m33, and the place of m22 has
 /// (m22 − m11) / m33: headings tell these ratios well whatever m33 is, and positions tell m33 by
 /// way of m22.
 struct PathPlace {
@@ -31,7 +32,8 @@ struct PathPlace {
     return static_cast<Eigen::Index>(PlanarPlace::thruster(static_cast<std::size_t>(index)));
   }
   static Eigen::Index munk(Eigen::Index thrusters) { return thruster(thrusters); }
-  static Eigen::Index current(Eigen::Index thrusters) { return munk(thrusters) + 1; }
+  static Eigen::Index shift(Eigen::Index thrusters) { return munk(thrusters) + 1; }
+  static Eigen::Index current(Eigen::Index thrusters) { return munk(thrusters) + 2; }
   static Eigen::Index count(Eigen::Index thrusters) { return current(thrusters) + 2; }
 };
 
@@ -53,8 +55,9 @@ struct PathStates {
 ///   ẋ = u cos ψ − v sin ψ + c_x,   ẏ = u sin ψ + v cos ψ + c_y,   ψ̇ = r,
 ///   M ν̇ = τ(n) + c − C(ν) ν − (D_l + D_q |ν|) ν          (Fossen 2011, eq. 6.1 and 8.3)
 /// by Runge-Kutta's method of order four, and the variational equations along with the state
-/// (Bock 1983). Velocities are through the water, in which C and D act. `sought`: places of
-/// PathPlace. A path that leaves all bounds has states that are not finite. Allocates.
+/// (Bock 1983). Only ramps are shifted. Velocities are through the water, in which C and D act.
+/// `sought`: places of PathPlace. A path that leaves all bounds has states that are not finite.
+/// Allocates.
 PathStates drive_piece(const PathPiece& piece, const Eigen::VectorXd& parameters,
                        const PoseState& start, BetweenRows between,
                        const std::vector<Eigen::Index>& sought, bool with_jacobian);

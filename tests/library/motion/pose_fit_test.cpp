@@ -60,7 +60,7 @@ Eigen::VectorXd path_parameters(const PlanarVehicle& truth) {
     const PlanarThruster& one = truth.thrusters[static_cast<std::size_t>(i)];
     p(PathPlace::thruster(i) + PathPlace::ratio) = one.reverse / one.forward;
   }
-  p.tail<2>() << 0.05, -0.03;  // the current, m/s
+  p.tail<3>() << 0.07, 0.05, -0.03;  // speeds are logged so much late [s], and the current [m/s]
   return p;
 }
 
