@@ -144,14 +144,14 @@ TEST(PoseFit, FindsTheVehicleBehindPosesWithNoiseOfTenCentimetres) {
 
 TEST(PoseFit, ThrustersThatRunTogetherAreRefusedByName) {
   const PoseRows rows = measured(vehicle(), sines(600.0, true), 0.02);
-  const std::string message = message_of([&] { fit_poses(rows); });
+  const std::string message = message_of<InputError>([&] { fit_poses(rows); });
   EXPECT_NE(message.find("too little excitation to tell"), std::string::npos) << message;
   EXPECT_NE(message.find(".forward"), std::string::npos) << message;
 }
 
 TEST(PoseFit, AMinuteIsTooShort) {
   const std::string message =
-      message_of([&] { fit_poses(measured(vehicle(), sines(60.0), 0.02)); });
+      message_of<InputError>([&] { fit_poses(measured(vehicle(), sines(60.0), 0.02)); });
   EXPECT_NE(message.find("too few poses"), std::string::npos) << message;
 }
 
