@@ -25,8 +25,8 @@ struct PoseRows {
 /// 1. Output errors (Maine & Iliff 1986): the vehicle is simulated from the thruster speeds, and
 ///    the simulated poses are compared with the measured ones. Velocities come from the simulation,
 ///    so noise of the poses enters no regressor.
-/// 2. Multiple shooting (Bock 1983): pieces of some 60 s have a start of their own each, and are
-///    not tied to each other. Starts are eliminated from the normal equations of each step.
+/// 2. Multiple shooting (Bock 1983): pieces of some two minutes have a start of their own each, and
+///    are not tied to each other. Starts are eliminated from the normal equations of each step.
 /// 3. Levenberg-Marquardt steps with bounds (D, K ≥ 0), Huber's weights by the robust deviation of
 ///    the residuals. Derivatives are integrated along.
 /// 4. The first estimate: yaw alone from the headings, where moments of the thrusters are linear
@@ -35,12 +35,13 @@ struct PoseRows {
 ///    explains most.
 /// 5. Standard errors: inverse of the normal equations, with the variance of x and y, and of the
 ///    heading, times the sum of the residuals' autocorrelations; plus 0.3 % of the value, as
-///    fit_planar().
+///    fit_planar(), and the effect of 0.3 % of m22 in the Munk moment (m11 − m22) u v, which alone
+///    tells m33.
 ///
 /// A constant current, and a shift of the speeds in time where ramps explain most, are estimated
-/// along and are not among the parameters. Headings may jump by full
-/// turns. PlanarFit::windows counts the pieces, `misfit` is the larger sum of autocorrelations,
-/// free_terms are empty.
+/// along and are not among the parameters. Headings may jump by full turns. PlanarFit::windows
+/// counts the pieces, `misfit` is the largest sum of autocorrelations, free_terms are empty.
+///
 /// Throws InputError naming the undetermined masses or thrusts if rows or excitation are
 /// insufficient. Cost: some 100 simulations of the rows with derivatives. Allocates. Deterministic.
 PlanarFit fit_poses(const PoseRows& rows);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
+#include <array>
 #include <vector>
 
 #include "kelpie/stream/stream_plan.hpp"

@@ -128,7 +128,9 @@ log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
     given = std::move(inputs);
   };
   align(data.inputs);
-  align(data.pose_inputs);
+  if (!data.pose_inputs.empty()) {
+    align(data.pose_inputs);
+  }
   return data;
 }
 
