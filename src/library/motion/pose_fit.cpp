@@ -53,13 +53,31 @@ PathPiece piece_of(const PoseRows& rows, const Eigen::VectorXd& greatest, std::s
   return piece;
 }
 
+// The first row of each stretch without a gap or a hole in the headings, in which full turns would
+// be lost; then the number of rows.
+std::vector<std::size_t> starts_with_holes(const PoseRows& rows) {
+  std::vector<std::size_t> starts = rows.starts;
+  double last_s = std::numeric_limits<double>::infinity();
+  for (std::size_t row = 0; row < rows.times_s.size(); ++row) {
+    if (std::isfinite(rows.poses[3 * row + 2])) {
+      if (rows.times_s[row] - last_s > kPath.longest_hole_s) {
+        starts.push_back(row);
+      }
+      last_s = rows.times_s[row];
+    }
+  }
+  starts.push_back(rows.times_s.size());
+  std::ranges::sort(starts);
+  return starts;
+}
+
 // Stretches in equal parts of about this length.
 PathCut cut(const PoseRows& rows, const Eigen::VectorXd& greatest, double length_s) {
   PathCut found;
-  for (std::size_t stretch = 0; stretch < rows.starts.size(); ++stretch) {
-    const std::size_t begin = rows.starts[stretch];
-    const std::size_t end =
-        stretch + 1 < rows.starts.size() ? rows.starts[stretch + 1] : rows.times_s.size();
+  const std::vector<std::size_t> starts = starts_with_holes(rows);
+  for (std::size_t stretch = 0; stretch + 1 < starts.size(); ++stretch) {
+    const std::size_t begin = starts[stretch];
+    const std::size_t end = starts[stretch + 1];
     if (end < begin + 2 || rows.times_s[end - 1] - rows.times_s[begin] < kPath.least_stretch_s) {
       continue;
     }

@@ -104,6 +104,7 @@ inline constexpr struct PathTuning {
   double piece_s = 120.0;         ///< [s] length of a piece
   double brief_piece_s = 20.0;    ///< [s] … for the first estimate
   double least_stretch_s = 15.0;  ///< [s] shorter stretches without a gap take no part: by hand
+  double longest_hole_s = 1.0;    ///< [s] without a heading, within a stretch: by hand
   std::size_t least_pieces = 2;   ///< by hand
   double longest_step_s = 0.25;   ///< [s] of Runge-Kutta's method: by hand
   double huber_sigmas = 3.0;      ///< [standard deviations] smaller weight beyond: by hand
