@@ -95,7 +95,8 @@ TEST_F(Poses, TellTheVehiclesParametersWithoutAVelocity) {
       testing::succeeded(run("identify poses.csv --pose x,y,psi --thrust th1=0.0262 --split none "
                              "--json --out identified"));
   std::map<std::string, double> value;
-  for (const auto& one : nlohmann::json::parse(outcome.out)["parameters"]) {
+  const nlohmann::json found = nlohmann::json::parse(outcome.out);
+  for (const auto& one : found["parameters"]) {
     ASSERT_TRUE(one["value"].is_number()) << one;
     value[one["name"]] = one["value"];
   }
