@@ -14,6 +14,7 @@
 #include "kelpie/core/error.hpp"
 #include "motion/expected_fit.hpp"
 #include "motion/minimum_distance.hpp"
+#include "motion/planar_estimate.hpp"
 #include "motion/structure.hpp"
 #include "motion/tuning.hpp"
 
@@ -31,20 +32,6 @@ constexpr std::array<const char*, PlanarPlace::per_thruster> kThrusterNames{"for
 bool is_angle(std::size_t place) {
   return place >= PlanarPlace::thrusters &&
          (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster == 2;
-}
-
-// All but the surge inertia and the coefficients of directions in which no thruster ran.
-std::vector<Eigen::Index> sought(const Eigen::MatrixXd& gram, Eigen::Index parameters) {
-  std::vector<Eigen::Index> places;
-  for (Eigen::Index place = 1; place < parameters; ++place) {
-    const Eigen::Index of_thruster = place - static_cast<Eigen::Index>(PlanarPlace::thrusters);
-    const Eigen::Index term = kTermThrusters + 2 * (of_thruster / 4) + of_thruster % 4;
-    if (of_thruster >= 0 && of_thruster % 4 < 2 && gram(term, term) <= 0.0) {
-      continue;
-    }
-    places.push_back(place);
-  }
-  return places;
 }
 
 // In the plane, with as many parameters as `parameters`.
@@ -71,12 +58,12 @@ MinimumDistance fit_structure(const FreeFit& fit, std::size_t thrusters) {
   MinimumDistance start{.parameters = first_guess(fit, thrusters)};
   const auto vehicle_size = static_cast<Eigen::Index>(PlanarPlace::thrusters);
   MinimumDistance vehicle{.parameters = start.parameters.head(vehicle_size)};
-  vehicle.free = sought(fit.gram, vehicle_size);
+  vehicle.free = sought_places(fit.gram, vehicle_size);
   const EquationStructure without = planar_structure(vehicle.parameters);
   vehicle = minimise_distance(without_thrusters(fit), without, std::move(vehicle));
   start.parameters.head(vehicle_size) = vehicle.parameters;
   guess_thrusters(fit, start.parameters);
-  start.free = sought(fit.gram, start.parameters.size());
+  start.free = sought_places(fit.gram, start.parameters.size());
   const EquationStructure structure = planar_structure(start.parameters);
   return minimise_distance(fit, structure, std::move(start));
 }
@@ -135,66 +122,9 @@ Eigen::Vector3d force_sizes(const WeakRows& rows, const Eigen::VectorXd& paramet
       .cwiseMax(std::numeric_limits<double>::min());
 }
 
-void require_excitation(const PlanarFit& fit, const MinimumDistance& best) {
-  std::vector<std::string> missing;
-  for (const std::size_t place : {PlanarPlace::sway_inertia, PlanarPlace::yaw_inertia}) {
-    if (fit.parameters[place].state == ParameterState::not_told || best.indefinite) {
-      missing.push_back(fit.parameters[place].name);
-    }
-  }
-  for (std::size_t at = PlanarPlace::thrusters; at < fit.parameters.size();
-       at += PlanarPlace::per_thruster) {
-    if (fit.parameters[at].state == ParameterState::not_told &&
-        fit.parameters[at + 1].state == ParameterState::not_told) {
-      missing.push_back(fit.parameters[at].name);
-    }
-  }
-  if (!missing.empty()) {
-    throw InputError("too little excitation to tell " + join_text(missing, ", ") +
-                     "; it takes a log in which surge, sway and yaw speed up and slow down, and "
-                     "every thruster runs by itself");
-  }
-}
-
 double misfit_of(const MinimumDistance& best, const SandwichErrors& errors) {
   return std::max(
       1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
-}
-
-// `errors`: of the free parameters, by chance alone.
-PlanarFit collected(const std::vector<std::string>& thrusters, const WeakRows& weak,
-                    const MinimumDistance& best, const Eigen::MatrixXd& errors, double misfit) {
-  PlanarFit fit;
-  fit.windows = static_cast<std::size_t>(weak.terms.rows());
-  fit.window_s = 2.0 * kIdentification.half_window_s;
-  fit.misfit = misfit;
-  const std::vector<std::string> names = planar_parameter_names(thrusters);
-  fit.covariance = Matrix(names.size(), names.size());
-  auto covariance = as_matrix(fit.covariance);
-  covariance(best.free, best.free) = misfit * errors;
-  const Eigen::Vector3d forces = force_sizes(weak, best.parameters);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto place = static_cast<Eigen::Index>(i);
-    const bool is_sought = std::ranges::find(best.free, place) != best.free.end();
-    const double value = best.parameters(place);
-    const double chance = std::sqrt(covariance(place, place) / misfit);  // excitation's alone
-    if (is_sought) {
-      const double allowance = is_angle(i) ? kIdentification.angle_allowance_rad
-                                           : kIdentification.plane_allowance * value;
-      covariance(place, place) += allowance * allowance;
-    }
-    const double error = std::sqrt(covariance(place, place));
-    const ParameterState state =
-        i == PlanarPlace::surge_inertia ? ParameterState::known
-        : !is_sought || blur(i, chance, best.parameters, weak, forces) > kIdentification.most_blur
-            ? ParameterState::not_told
-        : best.at_bound[i] ? ParameterState::at_bound
-                           : ParameterState::identified;
-    const bool scales =
-        i < PlanarPlace::thrusters || (i - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
-    fit.parameters.push_back({names[i], value, error, state, scales});
-  }
-  return fit;
 }
 
 // What was never seen: a thruster counts as alike both ways.
@@ -254,6 +184,76 @@ WeakRows explained_windows(const PlanarRows& rows) {
 
 }  // namespace
 
+std::vector<Eigen::Index> sought_places(const Eigen::MatrixXd& gram, Eigen::Index parameters) {
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index place = 1; place < parameters; ++place) {
+    const Eigen::Index of_thruster = place - static_cast<Eigen::Index>(PlanarPlace::thrusters);
+    const Eigen::Index term = kTermThrusters + 2 * (of_thruster / 4) + of_thruster % 4;
+    if (of_thruster >= 0 && of_thruster % 4 < 2 && gram(term, term) <= 0.0) {
+      continue;
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
+PlanarFit planar_estimate(const std::vector<std::string>& thrusters, const WeakRows& weak,
+                          const MinimumDistance& best, const Eigen::MatrixXd& errors,
+                          double misfit) {
+  PlanarFit fit;
+  fit.windows = static_cast<std::size_t>(weak.terms.rows());
+  fit.window_s = 2.0 * kIdentification.half_window_s;
+  fit.misfit = misfit;
+  const std::vector<std::string> names = planar_parameter_names(thrusters);
+  fit.covariance = Matrix(names.size(), names.size());
+  auto covariance = as_matrix(fit.covariance);
+  covariance(best.free, best.free) = misfit * errors;
+  const Eigen::Vector3d forces = force_sizes(weak, best.parameters);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto place = static_cast<Eigen::Index>(i);
+    const bool is_sought = std::ranges::find(best.free, place) != best.free.end();
+    const double value = best.parameters(place);
+    const double chance = std::sqrt(covariance(place, place) / misfit);  // excitation's alone
+    if (is_sought) {
+      const double allowance = is_angle(i) ? kIdentification.angle_allowance_rad
+                                           : kIdentification.plane_allowance * value;
+      covariance(place, place) += allowance * allowance;
+    }
+    const double error = std::sqrt(covariance(place, place));
+    const ParameterState state =
+        i == PlanarPlace::surge_inertia ? ParameterState::known
+        : !is_sought || blur(i, chance, best.parameters, weak, forces) > kIdentification.most_blur
+            ? ParameterState::not_told
+        : best.at_bound[i] ? ParameterState::at_bound
+                           : ParameterState::identified;
+    const bool scales =
+        i < PlanarPlace::thrusters || (i - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
+    fit.parameters.push_back({names[i], value, error, state, scales});
+  }
+  return fit;
+}
+
+void require_excitation(const PlanarFit& fit, const MinimumDistance& best) {
+  std::vector<std::string> missing;
+  for (const std::size_t place : {PlanarPlace::sway_inertia, PlanarPlace::yaw_inertia}) {
+    if (fit.parameters[place].state == ParameterState::not_told || best.indefinite) {
+      missing.push_back(fit.parameters[place].name);
+    }
+  }
+  for (std::size_t at = PlanarPlace::thrusters; at < fit.parameters.size();
+       at += PlanarPlace::per_thruster) {
+    if (fit.parameters[at].state == ParameterState::not_told &&
+        fit.parameters[at + 1].state == ParameterState::not_told) {
+      missing.push_back(fit.parameters[at].name);
+    }
+  }
+  if (!missing.empty()) {
+    throw InputError("too little excitation to tell " + join_text(missing, ", ") +
+                     "; it takes a log in which surge, sway and yaw speed up and slow down, and "
+                     "every thruster runs by itself");
+  }
+}
+
 std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters) {
   std::vector<std::string> names(kVehicleNames.begin(), kVehicleNames.end());
   for (const std::string& thruster : thrusters) {
@@ -269,7 +269,8 @@ PlanarFit fit_planar(const PlanarRows& rows) {
   const FreeFit free_fit = fit_freely(weak);
   const MinimumDistance best = fit_structure(free_fit, rows.thrusters.size());
   const SandwichErrors errors = sandwich(free_fit, planar_structure(best.parameters), best);
-  PlanarFit fit = collected(rows.thrusters, weak, best, errors.covariance, misfit_of(best, errors));
+  PlanarFit fit =
+      planar_estimate(rows.thrusters, weak, best, errors.covariance, misfit_of(best, errors));
   fit.free_terms = Matrix(static_cast<std::size_t>(free_fit.coefficients.rows()), kPlanarAxes);
   as_matrix(fit.free_terms) = free_fit.coefficients;
   require_excitation(fit, best);
@@ -347,8 +348,9 @@ double ExpectedPlanarFit::evidence(const WeakRows& drives, const std::vector<dou
 PlanarFit ExpectedPlanarFit::fit_of(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& scores,
                                     const WeakRows& windows) const {
   MinimumDistance best = best_;
-  best.free = sought(gram, best.parameters.size());
-  return collected(thrusters_, windows, best, covariance_of(gram, scores, best.free), misfit_);
+  best.free = sought_places(gram, best.parameters.size());
+  return planar_estimate(thrusters_, windows, best, covariance_of(gram, scores, best.free),
+                         misfit_);
 }
 
 std::array<AccelerationCheck, kPlanarAxes> check_accelerations(

@@ -99,4 +99,23 @@ inline constexpr struct IdentificationTuning {
   double least_volts_ratio = 1.02;   ///< of the highest to the lowest supply, to tell an exponent
 } kIdentification;
 
+/// Of fit_poses(): chosen on the simulated Dagon, seeds 1001 to 1006, where a line says no more.
+inline constexpr struct PathTuning {
+  double piece_s = 120.0;         ///< [s] length of a piece
+  double brief_piece_s = 20.0;    ///< [s] … for the first estimate
+  double least_stretch_s = 15.0;  ///< [s] shorter stretches without a gap take no part: by hand
+  double longest_hole_s = 1.0;    ///< [s] without a heading, within a stretch: by hand
+  std::size_t least_pieces = 2;   ///< by hand
+  double longest_step_s = 0.25;   ///< [s] of Runge-Kutta's method: by hand
+  double huber_sigmas = 3.0;      ///< [standard deviations] smaller weight beyond: by hand
+  double correlated_s = 15.0;     ///< [s] longest lag of the residuals' autocorrelation: by hand
+  std::array<double, 2> time_constants_s{2.0, 20.0};  ///< [s] tried first, of each axis
+  double first_damping = 1e-3;  ///< [relative] of Levenberg and Marquardt: by hand
+  int most_steps = 25;          ///< by hand
+  int most_trials = 10;         ///< dampings per step: by hand
+  int noise_rounds = 2;         ///< of the weights
+  double coarse_gain = 1e-3;    ///< [share of the sum] ends a round of the first estimate
+  double fine_gain = 1e-6;      ///< [share of the sum] ends a round
+} kPath;
+
 }  // namespace kelpie

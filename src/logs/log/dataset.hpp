@@ -98,13 +98,17 @@ struct Dataset {
   std::string source;
   std::vector<std::string> input_names;
   std::vector<std::string> target_names;
-  std::vector<double> inputs;         ///< row-major, rows × inputs, in the log's own units
-  std::vector<double> targets;        ///< row-major, rows × targets
-  std::vector<double> times_s;        ///< seconds, never decreasing
-  std::vector<int> configurations;    ///< number of the vehicle's configuration, 0 where not told
-  std::vector<bool> held_out;         ///< marks of held-out rows; empty: not marked
-  std::string heading_column{};       ///< empty: none
-  std::vector<double> headings{};     ///< of each row, as the log has them, perhaps NaN; or empty
+  std::vector<double> inputs;       ///< row-major, rows × inputs, in the log's own units
+  std::vector<double> targets;      ///< row-major, rows × targets
+  std::vector<double> times_s;      ///< seconds, never decreasing
+  std::vector<int> configurations;  ///< number of the vehicle's configuration, 0 where not told
+  std::vector<bool> held_out;       ///< marks of held-out rows; empty: not marked
+  std::string heading_column{};     ///< empty: none
+  std::vector<double> headings{};   ///< of each row, as the log has them, perhaps NaN; or empty
+  /// Where inputs are means over the window of a pose: rows × 3 of x, y [m] and heading [rad] at
+  /// the rows' own times (NaN: not measured), and the inputs there; else empty.
+  std::vector<double> poses{};
+  std::vector<double> pose_inputs{};
   std::size_t rows_read = 0;          ///< rows of the log, including skipped rows
   std::size_t rows_skipped = 0;       ///< rows left out: a NaN or infinity in a column in use
   std::string time_column{};          ///< empty: rows at a rate

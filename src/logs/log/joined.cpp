@@ -66,6 +66,8 @@ Dataset rows_since(const Dataset& data, double since_s) {
   drop(rest.configurations, 1);
   drop(rest.held_out, 1);
   drop(rest.headings, 1);
+  drop(rest.poses, 3);
+  drop(rest.pose_inputs, data.input_names.size());
   return rest;
 }
 
@@ -84,6 +86,8 @@ Dataset joined(std::vector<Dataset> logs) {
                            [&](double time) { return time + later; });
     append(all.inputs, next.inputs);
     append(all.targets, next.targets);
+    append(all.poses, next.poses);
+    append(all.pose_inputs, next.pose_inputs);
     append(all.configurations, next.configurations);
     append(all.held_out, next.held_out);
     all.rows_read += next.rows_read;

@@ -17,6 +17,7 @@
 #include "log/dataset.hpp"
 #include "log/held_table.hpp"
 #include "log/pose_config.hpp"
+#include "log/pose_instants.hpp"
 #include "log/signal.hpp"
 #include "motion/signal_names.hpp"
 
@@ -308,6 +309,7 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
   }
   Samples samples = sample(plan, std::move(found.signals), source.path);
   log.table = std::move(samples.table);
+  log.instants = std::move(samples.instants);
   log.sampling = std::move(samples.report);
   if (plan.pose) {
     restore_labels(log.roles, log.table);
@@ -329,6 +331,7 @@ Dataset Log::dataset() const {
     add_neutral_pulses(table, all);
   }
   Dataset data = make_dataset(table, all);
+  add_pose_instants(instants, data);
   if (!sampling.sources.empty()) {
     data.rate_hz = sampling.rate_hz;  // as asked for; stamps tell it only to rounding
   }

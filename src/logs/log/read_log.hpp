@@ -20,6 +20,7 @@ namespace kelpie::log {
 struct Log {
   Table table;
   Roles roles;                ///< as given, with the time and rate of the table
+  Table instants{};           ///< Samples::instants
   SamplingReport sampling{};  ///< result of sampling; no sources: the log was a table of samples
   std::string losses{};       ///< losses of a damaged bag, for the user: a line each
   std::size_t disarmed = 0;   ///< messages left out because motors were disarmed

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
+#include "log/pose_instants.hpp"
 #include "log/streamed_signals.hpp"
 
 namespace kelpie::log {
@@ -58,6 +59,7 @@ class Sampler {
     samples.report.lag_until_s = lag_until_s;
     report_on(streamed, samples.report);
     samples.table = table_of(streamed);
+    samples.instants = pose_instants(stream_plan_, signals_);
     count_rows(samples.table, samples.report);
     return samples;
   }

@@ -53,7 +53,8 @@ struct SamplingReport {
 
 /// A log at a common rate.
 struct Samples {
-  Table table;  ///< columns t [s], sources, derived; NaN where something is silent
+  Table table;       ///< columns t [s], sources, derived; NaN where something is silent
+  Table instants{};  ///< pose_instants()
   SamplingReport report;
 };
 

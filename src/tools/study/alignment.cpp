@@ -108,22 +108,29 @@ log::Dataset aligned(log::Dataset data, const Alignment& alignment) {
     commands.push_back(data.require_input(name, "is to be shifted"));
   }
   const int most = static_cast<int>(data.rows());
-  AlignedRows rows(std::clamp(alignment.rows_at(data.rate_hz), -most, most), commands,
-                   data.input_names.size(), 0, data.rate_hz, alignment.actuators);
-  std::vector<double> inputs;
-  inputs.reserve(data.inputs.size());
-  const auto take = [&](std::span<const double> x, std::span<const double>, double) {
-    inputs.insert(inputs.end(), x.begin(), x.end());
-  };
-  for (std::size_t row = 0; row < data.rows(); ++row) {
-    if (row > 0 && !data.configurations.empty() &&
-        data.configurations[row] != data.configurations[row - 1]) {
-      rows.finish(take);
+  const std::size_t width = data.input_names.size();
+  const auto align = [&](std::vector<double>& given) {
+    AlignedRows rows(std::clamp(alignment.rows_at(data.rate_hz), -most, most), commands, width, 0,
+                     data.rate_hz, alignment.actuators);
+    std::vector<double> inputs;
+    inputs.reserve(given.size());
+    const auto take = [&](std::span<const double> x, std::span<const double>, double) {
+      inputs.insert(inputs.end(), x.begin(), x.end());
+    };
+    for (std::size_t row = 0; row < given.size() / width; ++row) {
+      if (row > 0 && !data.configurations.empty() &&
+          data.configurations[row] != data.configurations[row - 1]) {
+        rows.finish(take);
+      }
+      rows.push(std::span(given).subspan(row * width, width), {}, data.times_s[row], take);
     }
-    rows.push(data.input(row), {}, data.times_s[row], take);
+    rows.finish(take);
+    given = std::move(inputs);
+  };
+  align(data.inputs);
+  if (!data.pose_inputs.empty()) {
+    align(data.pose_inputs);
   }
-  rows.finish(take);
-  data.inputs = std::move(inputs);
   return data;
 }
 

@@ -98,6 +98,8 @@ std::unique_ptr<OnlineModel> make_last_value(const log::Dataset& data) {
 log::Dataset without_inputs(log::Dataset data, const std::vector<std::string>& left_out) {
   const std::vector<std::string> names = std::exchange(data.input_names, {});
   const std::vector<double> inputs = std::exchange(data.inputs, {});
+  data.poses.clear();
+  data.pose_inputs.clear();
   const auto is_kept = [&](std::size_t i) {
     return std::ranges::find(left_out, names[i]) == left_out.end();
   };

@@ -12,6 +12,7 @@
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/plausibility.hpp"
+#include "motion/pose_fit.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "study/metrics.hpp"
@@ -126,6 +127,24 @@ HeldOutFit judge(const log::Dataset& data, const std::vector<std::size_t>& rows,
   }
   held_out.score();
   return held_out;
+}
+
+// The poses of rows that are given as stretches, and the thrusters' speeds then.
+PoseRows pose_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
+                   const PlanarColumns& columns, const PlanarRows& stretches) {
+  PoseRows found{.thrusters = stretches.thrusters,
+                 .times_s = stretches.times_s,
+                 .poses = {},
+                 .speeds = {},
+                 .starts = stretches.starts};
+  for (const std::size_t row : rows) {
+    const std::span pose = std::span(data.poses).subspan(kPlanarAxes * row, kPlanarAxes);
+    found.poses.insert(found.poses.end(), pose.begin(), pose.end());
+    for (const std::size_t thruster : columns.thrusters) {
+      found.speeds.push_back(data.pose_inputs[row * data.input_names.size() + thruster]);
+    }
+  }
+  return found;
 }
 
 // Works on the fit of either kind.
@@ -243,14 +262,21 @@ Identification identify(const log::Dataset& data, const Split& split, const Plan
   const int wanted = data.configurations[training.front()];
   Identification found = identification_of(data, split, training.size());
   const PlanarRows rows = planar_rows(data, training, columns);
-  require_accelerations(data, columns, rows, training);
-  found.planar = of_log(data, [&] { return fit_planar(rows); });
+  if (data.poses.empty()) {
+    require_accelerations(data, columns, rows, training);
+    found.planar = of_log(data, [&] { return fit_planar(rows); });
+  } else {
+    const PoseRows poses = pose_rows(data, training, columns, rows);
+    found.planar = of_log(data, [&] { return fit_poses(poses); });
+  }
   require_numbers(data, found.planar);
   for (const std::size_t target : columns.targets) {
     found.targets.push_back(data.target_names[target]);
   }
-  found.held_out =
-      judge(data, of_configuration(data, split.held_out, wanted), columns, found.planar);
+  if (data.poses.empty()) {  // else held-out accelerations are those of noise, above all
+    found.held_out =
+        judge(data, of_configuration(data, split.held_out, wanted), columns, found.planar);
+  }
   give_scale(known, found);
   for (std::size_t i = 0; i < columns.thrusters.size(); ++i) {
     const auto unit = data.units.find(rows.thrusters[i]);

@@ -91,8 +91,9 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
                        const PlanarColumns& columns);
 
 /// Identifies on the training rows of the configuration `only` (default: the first), and scores on
-/// its held-out rows. Throws InputError on targets that aren't accelerations of the velocities and
-/// on an impossible scale; also throws what fit_planar() throws.
+/// its held-out rows; from poses, where the log has poses (fit_poses()), without a score. Throws
+/// InputError on targets that aren't accelerations of the velocities and on an impossible scale;
+/// also throws what fit_planar() throws.
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
                         const KnownThrust& known, std::optional<int> only);
 

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
+#include "core/angle.hpp"
+#include "kelpie/core/random.hpp"
+#include "log/csv.hpp"
 #include "log/pose_log.hpp"
 
 namespace kelpie::cli_pose_test {
@@ -47,6 +55,37 @@ TEST_F(Poses, AreLearnedWithoutAVelocityInTheLog) {
   EXPECT_NE(content("a.csv").find("udot"), std::string::npos);
 }
 
+// The simulated Dagon's log as poses at 5 Hz: velocities are integrated by the trapezoidal rule,
+// and noise is added. No velocity is left.
+std::string poses_of(const log::Table& simulated, double noise_m) {
+  const auto column = [&](const char* name) -> const std::vector<double>& {
+    return simulated.columns[simulated.find(name)];
+  };
+  RandomStream random(3, "poses");
+  std::string csv = "t,x,y,psi,th1,th2,th3\n";
+  std::array<double, 3> pose{};
+  std::array<double, 3> last{};  // velocities in the world
+  for (std::size_t row = 0; row < simulated.rows(); ++row) {
+    const double half_s = row == 0 ? 0.0 : 0.5 * (column("t")[row] - column("t")[row - 1]);
+    const double u = column("u")[row];
+    const double v = column("v")[row];
+    const double r = column("r")[row];
+    pose[2] += half_s * (last[2] + r);
+    const std::array<double, 3> now{u * std::cos(pose[2]) - v * std::sin(pose[2]),
+                                    u * std::sin(pose[2]) + v * std::cos(pose[2]), r};
+    pose[0] += half_s * (last[0] + now[0]);
+    pose[1] += half_s * (last[1] + now[1]);
+    last = now;
+    if (row % 5 == 0) {
+      csv += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", column("t")[row],
+                         pose[0] + noise_m * random.normal(), pose[1] + noise_m * random.normal(),
+                         wrapped(pose[2] + 0.0035 * random.normal()), column("th1")[row],
+                         column("th2")[row], column("th3")[row]);
+    }
+  }
+  return csv;
+}
+
 TEST_F(Poses, RowsAreHeldOutByAColumnOfTheLog) {
   const std::string log = testing::PoseLog(450.0).csv(0.01);
   std::istringstream lines(log);
@@ -66,6 +105,33 @@ TEST_F(Poses, RowsAreHeldOutByAColumnOfTheLog) {
   EXPECT_LT(held_out_s, 100.0);
   EXPECT_GT(held_out_s, 80.0);  // but for rows whose window has rows of both sides
   EXPECT_EQ(json("out/model.json")["inputs"], nlohmann::json({"u", "v", "r", "n", "m"}));
+}
+
+TEST_F(Poses, TellTheVehiclesParametersWithoutAVelocity) {
+  write("s.toml", "vehicle = \"" KELPIE_SOURCE_DIR
+                  "/vehicles/dagon.toml\"\nrate_hz = 25.0\nnoise = \"none\"\n"
+                  "[[configurations]]\nname = \"nominal\"\n[[phases]]\nconfiguration = "
+                  "\"nominal\"\nduration_s = 900.0\n");
+  testing::succeeded(run("simulate s.toml --out simulated.csv"));
+  write("poses.csv", poses_of(log::read_csv(folder_ / "simulated.csv"), 0.1));
+  const Outcome outcome =
+      testing::succeeded(run("identify poses.csv --pose x,y,psi --thrust th1=0.0262 --split none "
+                             "--json --out identified"));
+  std::map<std::string, double> value;
+  const nlohmann::json found = nlohmann::json::parse(outcome.out);
+  for (const auto& one : found["parameters"]) {
+    ASSERT_TRUE(one["value"].is_number()) << one;
+    value[one["name"]] = one["value"];
+  }
+  EXPECT_NEAR(value["th1.reverse"], 0.0200, 0.001);
+  EXPECT_NEAR(value["th2.forward"], 0.0262, 0.001);
+  EXPECT_NEAR(value["th3.forward"], 0.0364, 0.0015);
+  const auto drag = [&](const std::string& axis, double speed) {
+    return value[axis + "_linear_drag"] + speed * value[axis + "_quadratic_drag"];
+  };
+  EXPECT_NEAR(drag("surge", 0.09), 14.45, 0.05 * 14.45);
+  EXPECT_NEAR(drag("sway", 0.07), 19.13, 0.05 * 19.13);
+  EXPECT_NEAR(drag("yaw", 0.35), 1.65, 0.15 * 1.65);
 }
 
 TEST_F(Poses, AreRefusedWithWhatWouldBeRight) {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "kelpie/motion/planar_fit.hpp"
+#include "motion/minimum_distance.hpp"
+#include "motion/weak_form.hpp"
+
+namespace kelpie {
+
+/// Places of the parameters that rows with this gram matrix of terms may tell: all but the surge
+/// inertia and the coefficients of directions in which no thruster ran.
+std::vector<Eigen::Index> sought_places(const Eigen::MatrixXd& gram, Eigen::Index parameters);
+
+/// A fit with estimates, errors and states of all parameters. `weak`: accelerations and terms, by
+/// which a parameter's error is judged. `errors`: covariance of best.free, by chance alone.
+PlanarFit planar_estimate(const std::vector<std::string>& thrusters, const WeakRows& weak,
+                          const MinimumDistance& best, const Eigen::MatrixXd& errors,
+                          double misfit);
+
+/// Throws InputError with the masses and thrusters that are not told, if any.
+void require_excitation(const PlanarFit& fit, const MinimumDistance& best);
+
+}  // namespace kelpie
