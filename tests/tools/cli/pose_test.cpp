@@ -14,7 +14,7 @@
 #include "cli/command.hpp"
 #include "core/angle.hpp"
 #include "kelpie/core/random.hpp"
-#include "log/csv.hpp"
+#include "log/dataset.hpp"
 #include "log/pose_log.hpp"
 
 namespace kelpie::cli_pose_test {
