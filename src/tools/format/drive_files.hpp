@@ -18,6 +18,7 @@ struct PlannedDrive {
   double aim = 0.05;   ///< share, or nats
   bool parts = false;  ///< two causes, not parameters
   bool has_scale = false;
+  bool six_axes = false;  ///< depth and tilt count
   /// The command of a thruster for a speed of the fit.
   std::function<double(std::size_t thruster, double speed)> command =
       [](std::size_t, double speed) { return speed; };
