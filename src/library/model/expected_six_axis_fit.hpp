@@ -11,12 +11,12 @@
 
 namespace kelpie {
 
-/// Of fit_six_axes(), with the length of windows that the rows so far have, and with what errors of
-/// the velocity log and of the attitude do to the fit of these rows.
+/// Of fit_six_axes(), with the length of windows of the rows so far, and with the effects of errors
+/// of the velocity log and of the attitude on the fit of these rows.
 class ExpectedSixAxisFit : public ExpectedFit {
  public:
-  /// Throws what fit_six_axes() throws. A thruster that never ran in one direction counts as alike
-  /// both ways.
+  /// Throws as fit_six_axes() does. A thruster that ran in one direction only counts as alike both
+  /// ways.
   explicit ExpectedSixAxisFit(const SixAxisRows& rows, const SixAxisSettings& options = {});
 
   const SixAxisFit& now() const override { return now_; }
@@ -34,12 +34,12 @@ class ExpectedSixAxisFit : public ExpectedFit {
   SixAxisStructure structure_;
   SixAxisWindows windows_;
   Eigen::VectorXd parameters_;  ///< with those of the thrust curve 0, as the structure takes them
-  WindowNoise noise_;           ///< so that now() has the errors of the rows so far, or larger ones
+  WindowNoise noise_;           ///< scaled to the errors of the rows so far, where larger
   /// A matrix per axis, terms × parameters: derivatives of the residual (StructureResidual), the
   /// same in the metric N⁻¹ of the residuals M ν̇ − Θ f, and N⁻¹ M.
   std::vector<Eigen::MatrixXd> slopes_, weighted_, by_scores_;
   Information told_;       ///< by the rows so far
-  Eigen::MatrixXd floor_;  ///< covariance by what no log tells
+  Eigen::MatrixXd floor_;  ///< covariance by errors that no log shows
 };
 
 }  // namespace kelpie

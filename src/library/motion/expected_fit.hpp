@@ -11,21 +11,21 @@
 
 namespace kelpie {
 
-/// What an identification will find after rows to come, by its own windows, normal equations and
-/// sandwich: the standard errors of the rows so far and of drives on top, with the noise that the
-/// rows so far have in the windows (window_noise()).
+/// The expected result of an identification after rows to come, by the windows, normal equations
+/// and sandwich of the identification: the standard errors of the rows so far and of drives on top,
+/// with the noise that the rows so far have in the windows (window_noise()).
 class ExpectedFit {
  public:
   virtual ~ExpectedFit() = default;
 
-  /// By the rows so far. Errors are those of the identification, or those expected by
-  /// window_noise() where these are larger: residuals of a short log are smaller than its errors.
+  /// By the rows so far. Errors are the identification's, or the expected errors by window_noise()
+  /// where larger: residuals of a short log are smaller than the errors of the log.
   virtual const ParameterFit& now() const = 0;
   /// After windows of drives on top. Estimates stay.
   virtual ParameterFit after(const WeakRows& drives) const = 0;
 
   /// Expected logarithm of the likelihood ratio [nats] of two changes of the parameters after the
-  /// rows so far, if one of them is true and the other's size is fitted, for the harder of the two
+  /// rows so far, if one change is true and the other's size is fitted, for the harder of the two
   /// cases: T-optimality (Atkinson & Fedorov 1975) for changes so small that they act linearly.
   /// Errors of the parameters before the change count. `first`, `second`: changes of all
   /// parameters.
@@ -33,7 +33,7 @@ class ExpectedFit {
                   const std::vector<double>& second) const;
 
  protected:
-  /// What windows of drives tell of all parameters.
+  /// The information of windows about all parameters.
   struct Information {
     Eigen::MatrixXd hessian;    ///< of half the distance to the free coefficients
     Eigen::MatrixXd gradients;  ///< covariance of the distance's gradient, without the misfit

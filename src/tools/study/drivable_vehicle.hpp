@@ -25,8 +25,7 @@ struct DriveMotion {
 using DriveStep =
     std::function<void(std::span<const double> speeds, double dt_s, DriveMotion& motion)>;
 
-/// The vehicle of a log, for which drives are planned: what a plan has to know of the plane or of
-/// six axes.
+/// The vehicle of a log, in the plane or on six axes, as a plan of drives needs the vehicle.
 class DrivableVehicle {
  public:
   virtual ~DrivableVehicle() = default;
@@ -35,10 +34,10 @@ class DrivableVehicle {
   virtual const ThrusterPush& push() const = 0;
   /// A vehicle with the values of a fit like expected().now().
   virtual DriveStep vehicle_of(const ParameterFit& fit) const = 0;
-  /// For expected(), of rows of a drive: in the plane heave, roll, pitch and the direction of
+  /// The windows of a drive for expected(). In the plane heave, roll, pitch and the direction of
   /// gravity don't count.
   virtual WeakRows windows(const SixAxisRows& drive) const = 0;
-  /// Time between the rows of a drive that is thought of.
+  /// Time between the rows of a simulated drive.
   virtual double row_s() const = 0;
 };
 
@@ -63,7 +62,7 @@ class DrivablePlanarVehicle : public DrivableVehicle {
 /// On six axes. `expected` has to outlive the vehicle.
 class DrivableSixAxisVehicle : public DrivableVehicle {
  public:
-  /// `volts_ratio`: supply over the nominal one, the same all along the drive.
+  /// `volts_ratio`: supply over the nominal supply, constant along the drive.
   DrivableSixAxisVehicle(const ExpectedSixAxisFit& expected, ThrusterRange range,
                          double volts_ratio = 1.0);
 

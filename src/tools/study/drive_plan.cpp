@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/angle.hpp"
@@ -220,6 +223,59 @@ struct DriveChoice {
   DriveProgress progress{};
 };
 
+// The dictionary, searched for the largest gain again and again. On six axes, where a candidate
+// takes milliseconds, gains count as falling from choice to choice, so that a candidate is asked
+// again only if its last gain is above the best (Minoux 1978); in the plane every candidate is.
+class DriveSearch {
+ public:
+  explicit DriveSearch(const ThrusterPush& push)
+      : dictionary_(manoeuvres_for(push)),
+        asks_all_(push.axes() == kPlanarAxes),
+        last_(dictionary_.size(), std::numeric_limits<double>::infinity()),
+        blocked_(dictionary_.size(), false),
+        order_(dictionary_.size()) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+  }
+
+  DriveChoice best(const DriveRecord& record, const PossibleVehicles& possible,
+                   const DriveGoal& goal, const DriveProgress& now, double left_s) {
+    if (!asks_all_) {
+      std::ranges::stable_sort(order_, std::greater{},
+                               [this](std::size_t place) { return last_[place]; });
+    }
+    DriveChoice best;
+    for (const std::size_t place : order_) {
+      const Manoeuvre& manoeuvre = dictionary_[place];
+      if (!asks_all_ && last_[place] <= best.gain) {
+        break;
+      }
+      if (manoeuvre.duration_s() > left_s + 1e-9 ||
+          (blocked_[place] && !possible.allows(manoeuvre))) {
+        continue;
+      }
+      DriveRecord longer = record;
+      longer.add(manoeuvre);
+      DriveProgress progress = goal.progress(longer.windows());
+      const double gain = (now.missing - progress.missing) / manoeuvre.duration_s();
+      last_[place] = std::isfinite(gain) ? gain : 0.0;
+      if (last_[place] > best.gain) {
+        blocked_[place] = !blocked_[place] && !possible.allows(manoeuvre);
+        if (!blocked_[place]) {
+          best = {last_[place], &manoeuvre, std::move(progress)};
+        }
+      }
+    }
+    return best;
+  }
+
+ private:
+  std::vector<Manoeuvre> dictionary_;
+  bool asks_all_;
+  std::vector<double> last_;   // gains, per second
+  std::vector<bool> blocked_;  // by bounds, when last asked
+  std::vector<std::size_t> order_;
+};
+
 }  // namespace
 
 void DriveExtent::include(const DriveMotion& motion) {
@@ -377,7 +433,7 @@ DriveGoal parting_goal(const ExpectedFit& expected, const std::string& first,
 
 DrivePlan plan_drive(const DrivableVehicle& vehicle, const DriveBounds& bounds,
                      const DriveGoal& goal, const DriveMotion& start) {
-  const std::vector<Manoeuvre> dictionary = manoeuvres_for(vehicle.push());
+  DriveSearch search(vehicle.push());
   PossibleVehicles possible(vehicle, bounds, start);
   DriveRecord record(vehicle, start);
   DrivePlan plan{.names = goal.names};
@@ -385,19 +441,7 @@ DrivePlan plan_drive(const DrivableVehicle& vehicle, const DriveBounds& bounds,
   plan.countdown.push_back({0.0, "", now.numbers});
   double t_s = 0.0;
   while (!now.reached) {
-    DriveChoice best;
-    for (const Manoeuvre& manoeuvre : dictionary) {
-      if (t_s + manoeuvre.duration_s() > bounds.time_s + 1e-9) {
-        continue;
-      }
-      DriveRecord longer = record;
-      longer.add(manoeuvre);
-      DriveProgress progress = goal.progress(longer.windows());
-      const double gain = (now.missing - progress.missing) / manoeuvre.duration_s();
-      if (gain > best.gain && possible.allows(manoeuvre)) {
-        best = {gain, &manoeuvre, std::move(progress)};
-      }
-    }
+    DriveChoice best = search.best(record, possible, goal, now, bounds.time_s - t_s);
     if (best.manoeuvre == nullptr) {
       break;
     }

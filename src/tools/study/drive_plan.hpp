@@ -12,8 +12,8 @@
 
 namespace kelpie::study {
 
-/// Bounds that a drive keeps by the identified vehicle, and by vehicles as different from it as its
-/// errors allow.
+/// Bounds of a drive, kept by the identified vehicle and by vehicles as different as the errors
+/// allow.
 struct DriveBounds {
   double time_s = 120.0;   ///< of the whole drive
   double speed_m_s = 1.0;  ///< greatest speed through the water
@@ -41,7 +41,8 @@ class PossibleVehicles {
   PossibleVehicles(const DrivableVehicle& vehicle, const DriveBounds& bounds,
                    const DriveMotion& start);
 
-  /// Drives all of them, and lets them coast. Whether all kept the bounds; nothing changes if not.
+  /// Drives every vehicle and lets the vehicles coast. False, without a change, if a vehicle leaves
+  /// the bounds.
   bool drive(const Manoeuvre& manoeuvre);
   bool allows(const Manoeuvre& manoeuvre) const;
 
@@ -70,7 +71,7 @@ struct DriveGoal {
   std::function<DriveProgress(const WeakRows& windows)> progress;
 };
 
-/// Gives forces their unit; the errors of a fit are those with this unit.
+/// Gives forces a unit; errors of the fit count in this unit.
 using FitScale = std::function<void(ParameterFit&)>;
 
 /// To tell parameters (places in the fit): numbers are half widths of 90 % intervals over the sizes
@@ -117,7 +118,7 @@ std::vector<std::size_t> wanted_places(const ParameterFit& fit,
 /// of roll and pitch; 1 s of a delay, 1 of a dead band and of an exponent.
 double interval_share(const ParameterFit& fit, std::size_t place);
 
-/// Chooses manoeuvres one by one, each time the one after which least is missing per second of it,
+/// Chooses manoeuvre by manoeuvre, each time the largest fall of the missing amount per second,
 /// until the goal is reached, or no further manoeuvre fits the bounds. Sequential design of
 /// experiments for dynamic systems: Goodwin & Payne 1977, ch. 6. Throws InputError where no
 /// manoeuvre fits the bounds. Cost: manoeuvres × (steps + terms³) per choice. Allocates.

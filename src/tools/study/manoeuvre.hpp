@@ -17,7 +17,7 @@ struct HeldSpeeds {
   std::vector<double> speeds{};
 };
 
-/// One element of a drive that tells parameters: speeds of all thrusters over time.
+/// An element of a drive: speeds of all thrusters over time.
 struct Manoeuvre {
   std::string name;  ///< "sway doublet, 12 s, 100 %"
   std::vector<HeldSpeeds> parts{};
@@ -38,7 +38,7 @@ struct ThrusterRange {
   }
 };
 
-/// What the thrusters of a vehicle do to its axes: surge, sway, yaw, or all six. A direction has a
+/// Pushes of the thrusters along surge, sway and yaw, or along all six axes. A direction has a
 /// number per axis; moments count as forces at the thrusters' mean arm. Speeds are in the fit's
 /// unit, on six axes commands as shares of full.
 class ThrusterPush {
@@ -51,8 +51,8 @@ class ThrusterPush {
   /// Speeds with the largest force in a direction, times an amplitude in (0, 1]. Thrusts of least
   /// norm.
   virtual std::vector<double> speeds(std::span<const double> direction, double amplitude) const = 0;
-  /// Speeds whose thrusts are those of `speeds` and, on six axes, hold the vehicle's weight in
-  /// water and its moments besides, as far as the range goes.
+  /// `speeds` with further thrusts, on six axes, against the weight in water and the moments of a
+  /// level vehicle, as far as the range goes.
   virtual std::vector<double> held(std::vector<double> speeds) const { return speeds; }
   const ThrusterRange& range() const { return range_; }
 
@@ -81,7 +81,7 @@ class SixAxisPush : public ThrusterPush {
   SixAxisPush(const SixAxisFit& fit, ThrusterRange range, double supply);
 
   std::size_t axes() const override { return kSixAxes; }
-  /// Whether the axis can be pushed without as large a push on others.
+  /// Whether thrusters push the axis without as large a push on other axes.
   bool reaches(std::size_t axis) const override;
   std::vector<double> speeds(std::span<const double> direction, double amplitude) const override;
   std::vector<double> held(std::vector<double> speeds) const override;

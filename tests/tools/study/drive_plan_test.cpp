@@ -175,11 +175,19 @@ TEST(DrivePlan, EvidenceGrowsWithTheSquareOfTheChange) {
   EXPECT_NEAR(nats("th2", "drag", 0.1), nats("drag", "th2", 0.1), 1e-6 * small);
 }
 
-/// The simulated BlueROV2 Heavy with a DVL's noise: a pilot, then what is planned.
+vehicle::Scenario gentle_heavy() {
+  vehicle::Scenario scenario =
+      vehicle::read_scenario(KELPIE_SOURCE_DIR "/scenarios/bluerov2_heavy.toml");
+  scenario.excitation.effort << 12, 12, 10, 1, 1, 1;
+  scenario.excitation.dither = 0.02;
+  return scenario;
+}
+
+/// The simulated BlueROV2 Heavy with a DVL's noise: a gentle pilot, then what is planned.
 class HeavyDrive {
  public:
   explicit HeavyDrive(std::uint64_t seed)
-      : scenario_(vehicle::read_scenario(KELPIE_SOURCE_DIR "/scenarios/bluerov2_heavy.toml")),
+      : scenario_(gentle_heavy()),
         simulator_(scenario_.vehicle,
                    vehicle::make_plant(scenario_.vehicle, scenario_.configurations.front()),
                    Eigen::Vector3d::Zero(), vehicle::State{}),
@@ -262,7 +270,7 @@ double number_of(const ParameterFit& fit, const std::string& name) {
   return interval_share(fit, static_cast<std::size_t>(found - fit.parameters.begin()));
 }
 
-/// A pilot's 90 s, the plan for heave and pitch, and the drive.
+/// A pilot's minute, a rest, the plan for heave and pitch, and the drive.
 struct HeavyPlan {
   DriveBounds bounds{.time_s = 30.0, .radius_m = 5.0, .depth_m = 1.5, .tilt_rad = 0.4};
   DrivePlan plan;
@@ -271,15 +279,16 @@ struct HeavyPlan {
 
   HeavyPlan() {
     HeavyDrive drive(1);
-    drive.pilot(90.0);
+    drive.pilot(60.0);
+    drive.hold(std::vector(8, 0.0), 8.0);
     const ExpectedSixAxisFit expected(drive.rows());
     before = fit_six_axes(drive.rows());
     const std::size_t thrusters = before.thrusters.size();
     const DrivableSixAxisVehicle vehicle(
         expected, {std::vector(thrusters, -1.0), std::vector(thrusters, 1.0)}, 1.0);
     const DriveGoal goal =
-        telling_goal(expected, wanted_places(expected.now(), {"heave_drag", "pitch_inertia"}), 0.01,
-                     [](ParameterFit&) {});
+        telling_goal(expected, wanted_places(expected.now(), {"heave_drag", "pitch_inertia"}),
+                     0.005, [](ParameterFit&) {});
     DriveMotion start = drive.motion();
     start.position_m = {};
     plan = plan_drive(vehicle, bounds, goal, start);
