@@ -30,17 +30,21 @@ file::Json driver_json(const DriveStudy& study, std::size_t driver) {
   const auto every = [&](auto value) {
     return file::list(study.seeds, [&](const auto& seed) { return value(seed[driver]); });
   };
-  return {
-      {"name", driver_name(kDrivers[driver])},
-      {"told", every([](const DriveOutcome& one) { return file::Json(one.told); })},
-      {"told_s", every([](const DriveOutcome& one) { return file::number(one.told_s); })},
-      {"error", every([](const DriveOutcome& one) { return file::number(one.error); })},
-      {"expected_over_identified",
-       every([](const DriveOutcome& one) { return file::number(one.expected); })},
-      {"farthest_m", every([](const DriveOutcome& one) { return file::number(one.farthest_m); })},
-      {"fastest_m_s", every([](const DriveOutcome& one) { return file::number(one.fastest_m_s); })},
-      {"times_s", every([](const DriveOutcome& one) { return file::numbers(one.times_s); })},
-      {"worst_share", every([](const DriveOutcome& one) { return file::numbers(one.worst); })}};
+  const auto extent = [&](double study::DriveExtent::*number) {
+    return every([=](const DriveOutcome& one) { return file::number(one.extent.*number); });
+  };
+  return {{"name", driver_name(kDrivers[driver])},
+          {"told", every([](const DriveOutcome& one) { return file::Json(one.told); })},
+          {"told_s", every([](const DriveOutcome& one) { return file::number(one.told_s); })},
+          {"error", every([](const DriveOutcome& one) { return file::number(one.error); })},
+          {"expected_over_identified",
+           every([](const DriveOutcome& one) { return file::number(one.expected); })},
+          {"farthest_m", extent(&study::DriveExtent::farthest_m)},
+          {"fastest_m_s", extent(&study::DriveExtent::fastest_m_s)},
+          {"depth_m", extent(&study::DriveExtent::depth_m)},
+          {"tilt_rad", extent(&study::DriveExtent::tilt_rad)},
+          {"times_s", every([](const DriveOutcome& one) { return file::numbers(one.times_s); })},
+          {"worst_share", every([](const DriveOutcome& one) { return file::numbers(one.worst); })}};
 }
 
 file::Json study_rows(const DriveStudy& study) {
@@ -77,7 +81,9 @@ std::string drivers_table(const DriveStudyPlan& plan, const file::Json& rows) {
       column("rms error\nmedian %", "/error",
              [](double share) { return fmt::format("{:.2f}", 100.0 * share); }),
       {"farthest m", most("farthest_m", "{:.2f}")},
-      {"fastest m/s", most("fastest_m_s", "{:.3f}")}};
+      {"fastest m/s", most("fastest_m_s", "{:.3f}")},
+      {"deepest m", most("depth_m", "{:.2f}")},
+      {"greatest tilt rad", most("tilt_rad", "{:.2f}")}};
   chart::TextTable table = json_table(
       fmt::format("Time until `kelpie identify` tells all that is wanted to ±{:g} %, after {:g} s "
                   "of driving before, {} seeds (simulation); bounds {:g} m, {:g} m/s",
@@ -91,7 +97,9 @@ std::string drivers_table(const DriveStudyPlan& plan, const file::Json& rows) {
 void run_plan(const PlanArguments& options) {
   DriveStudyPlan plan = options.plan;
   plan.scenario = vehicle::read_scenario(scenario_file(options.scenario, "identify.toml"));
-  vehicle::require_plane(plan.scenario.vehicle);
+  if (plan.scenario.log != vehicle::LogKind::six) {
+    vehicle::require_plane(plan.scenario.vehicle);
+  }
   plan.scenario.seed = options.seed;
   if (options.rate_hz > 0.0) {
     plan.scenario.rate_hz = options.rate_hz;
@@ -111,6 +119,8 @@ void run_plan(const PlanArguments& options) {
                                            {"time_s", plan.bounds.time_s},
                                            {"radius_m", plan.bounds.radius_m},
                                            {"speed_m_s", plan.bounds.speed_m_s},
+                                           {"bound_depth_m", plan.bounds.depth_m},
+                                           {"bound_tilt_rad", plan.bounds.tilt_rad},
                                            {"drivers", rows}};
               return StudyReport{drivers_table(plan, rows), file::json_text(document, 1)};
             });
@@ -123,7 +133,8 @@ void add_plan(CLI::App& app) {
       app, "plan",
       "Time to identify the simulated vehicle by planned, random and a pilot's driving", run_plan);
   cli::add_file(command, "--scenario", options->scenario,
-                "scenario of one configuration; else scenarios/identify.toml");
+                "scenario of one configuration, in the plane or on six axes; else "
+                "scenarios/identify.toml");
   command->add_option("--rate", options->rate_hz, "rows per second; else the scenario's")
       ->check(CLI::PositiveNumber);
   command->add_option("--tell", options->plan.tell, "parameters, as of `kelpie plan`")
@@ -135,11 +146,17 @@ void add_plan(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--leg", options->plan.leg_s, "after which is identified again [s]")
       ->capture_default_str();
+  command->add_option("--check", options->plan.check_s, "between identifications that judge [s]")
+      ->capture_default_str();
   command->add_option("--seconds", options->plan.bounds.time_s, "longest drive [s]")
       ->capture_default_str();
   command->add_option("--speed", options->plan.bounds.speed_m_s, "greatest [m/s]")
       ->capture_default_str();
   command->add_option("--radius", options->plan.bounds.radius_m, "space [m]")
+      ->capture_default_str();
+  command->add_option("--depth", options->plan.bounds.depth_m, "greatest change, on six axes [m]")
+      ->capture_default_str();
+  command->add_option("--tilt", options->plan.bounds.tilt_rad, "greatest, on six axes [rad]")
       ->capture_default_str();
   add_seeds(command, options->plan.seeds, "of noise and drives");
   add_run_options(command, options->seed, options->plan.threads, options->out, "plan.json");

@@ -8,19 +8,20 @@
 #include <optional>
 
 #include "core/eigen.hpp"
+#include "core/normal_equations.hpp"
 #include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
+#include "model/expected_six_axis_fit.hpp"
 #include "model/six_axis_structure.hpp"
+#include "model/six_axis_windows.hpp"
 #include "motion/minimum_distance.hpp"
 #include "motion/tuning.hpp"
 #include "motion/weak_form.hpp"
 
 namespace kelpie {
 namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr std::array<const char*, SixAxisPlace::thrusters> kVehicleNames{
     "surge_inertia",        "sway_inertia",        "heave_inertia",        "roll_inertia",
@@ -31,10 +32,9 @@ constexpr std::array<const char*, SixAxisPlace::thrusters> kVehicleNames{
     "net_weight",           "roll_moment",         "pitch_moment",         "righting_moment"};
 constexpr std::array<const char*, SixAxisPlace::curve_size> kCurveNames{"lag", "delay", "dead_band",
                                                                         "volts_exponent"};
-constexpr std::array<double ThrustCurve::*, SixAxisPlace::curve_size> kCurve{
-    &ThrustCurve::lag_s, &ThrustCurve::delay_s, &ThrustCurve::dead_band, &ThrustCurve::exponent};
-// Differences for derivatives by, and the largest steps and values of, the parameters above.
-constexpr std::array kNudge{0.005, 0.005, 0.005, 0.05};
+// The largest steps and values of the parameters above.
+constexpr double kUnseen = 10.0;  // error of what was never seen, over the value
+constexpr double kStudent = kIdentification.student90 / kNormal90;
 constexpr std::array kMostStep{0.1, 0.1, 0.05, 0.5};
 constexpr std::array kMostValue{5.0, 2.0, 0.5, 3.0};
 
@@ -50,37 +50,17 @@ std::vector<std::string> names_of(const std::vector<PlacedThruster>& thrusters) 
   return names;
 }
 
-// rows × thrusters.
-Eigen::MatrixXd speeds_of(const SixAxisRows& rows, const ThrustCurve& curve) {
-  const std::vector<double> speeds = thruster_speeds(rows, curve);
-  return Eigen::Map<const RowMajor>(speeds.data(), place_of(rows.rows()),
-                                    place_of(rows.thrusters.size()));
-}
-
-// Newtons of each thruster, rows × thrusters.
-Eigen::MatrixXd thrusts_of(const Eigen::MatrixXd& speeds, const Eigen::VectorXd& parameters) {
-  Eigen::MatrixXd thrusts = speeds.cwiseProduct(speeds.cwiseAbs());
-  for (Eigen::Index i = 0; i < thrusts.cols(); ++i) {
-    const Eigen::Index at = place_of(SixAxisPlace::thruster(static_cast<std::size_t>(i)));
-    for (double& value : thrusts.col(i)) {
-      value *= value > 0.0 ? parameters(at) : parameters(at + 1);
-    }
-  }
-  return thrusts;
-}
-
 // One fit at one length of window.
 class Search {
  public:
   Search(const SixAxisRows& rows, const SixAxisSettings& options, double half_s)
       : rows_(rows),
         structure_(rows.thrusters),
-        arms_(thruster_arms(rows.thrusters)),
-        shape_{.half_s = half_s, .stride_s = kIdentification.stride_share * half_s},
-        curve_(options.start) {
-    active_ = {options.find_times, options.find_times, true, has_volts(rows)};
-    if (!active_[3]) {
-      curve_.exponent = 0.0;
+        windows_{.shape = {.half_s = half_s, .stride_s = kIdentification.stride_share * half_s},
+                 .curve = options.start,
+                 .sought = {options.find_times, options.find_times, true, has_volts(rows)}} {
+    if (!windows_.sought[3]) {
+      windows_.curve.exponent = 0.0;
     }
   }
 
@@ -117,19 +97,17 @@ class Search {
     return sum;
   }
 
-  const ThrustCurve& curve() const { return curve_; }
+  const SixAxisWindows& windows() const { return windows_; }
+  const WeakRows& weak() const { return weak_; }
+  const FreeFit& free() const { return free_; }
+  const MinimumDistance& best() const { return best_; }
+  const Eigen::MatrixXd& covariance() const { return errors_.covariance; }  // by chance
   SixAxisFit collected() const;
 
  private:
   // The same windows and thrust curve over other rows.
   Search(const SixAxisRows& rows, const Search& like)
-      : rows_(rows),
-        structure_(rows.thrusters),
-        arms_(like.arms_),
-        shape_(like.shape_),
-        curve_(like.curve_),
-        active_(like.active_),
-        best_(like.best_) {}
+      : rows_(rows), structure_(rows.thrusters), windows_(like.windows_), best_(like.best_) {}
 
   static bool has_volts(const SixAxisRows& rows) {
     if (rows.volts.empty()) {
@@ -139,57 +117,9 @@ class Search {
     return *most > kIdentification.least_volts_ratio * *least;
   }
 
-  Eigen::MatrixXd plain_terms(const Eigen::MatrixXd& speeds) const {
-    const MotionTerms& terms = structure_.terms();
-    const Eigen::Index count = place_of(rows_.rows());
-    Eigen::MatrixXd values(count, place_of(terms.size()));
-    std::vector<double> inputs(9 + rows_.thrusters.size());
-    std::vector<double> row_terms(terms.size());
-    for (Eigen::Index row = 0; row < count; ++row) {
-      const auto at = static_cast<std::size_t>(row);
-      std::copy_n(rows_.velocities.begin() + static_cast<std::ptrdiff_t>(6 * at), 6,
-                  inputs.begin());
-      std::copy_n(rows_.down.begin() + static_cast<std::ptrdiff_t>(3 * at), 3, inputs.begin() + 6);
-      for (std::size_t i = 0; i < rows_.thrusters.size(); ++i) {
-        inputs[9 + i] = speeds(row, place_of(i));
-      }
-      terms.evaluate(inputs, row_terms);
-      values.row(row) = Eigen::Map<const Eigen::RowVectorXd>(row_terms.data(), values.cols());
-    }
-    return values;
-  }
-
-  // Derivatives of the forces on six axes by the parameters of the curve, rows × 24.
-  Eigen::MatrixXd curve_terms() const {
-    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(place_of(rows_.rows()), 24);
-    for (std::size_t k = 0; k < kCurve.size(); ++k) {
-      if (!active_[k]) {
-        continue;
-      }
-      ThrustCurve above = curve_;
-      ThrustCurve below = curve_;
-      above.*kCurve[k] += kNudge[k];
-      below.*kCurve[k] = std::max(0.0, below.*kCurve[k] - kNudge[k]);
-      const Eigen::MatrixXd change = thrusts_of(speeds_of(rows_, above), best_.parameters) -
-                                     thrusts_of(speeds_of(rows_, below), best_.parameters);
-      values.middleCols(place_of(6 * k), 6) =
-          change * arms_.transpose() / (above.*kCurve[k] - below.*kCurve[k]);
-    }
-    return values;
-  }
-
   bool iterate(bool with_curve) {
-    const Eigen::MatrixXd plain = plain_terms(speeds_of(rows_, curve_));
-    EquationRows equation{
-        .times_s = rows_.times_s,
-        .starts = rows_.starts,
-        .velocities = Eigen::Map<const RowMajor>(rows_.velocities.data(), plain.rows(), 6),
-        .terms = Eigen::MatrixXd(plain.rows(), plain.cols() + (with_curve ? 24 : 0))};
-    equation.terms.leftCols(plain.cols()) = plain;
-    if (with_curve) {
-      equation.terms.rightCols(24) = curve_terms();
-    }
-    weak_ = weak_rows(equation, shape_);
+    weak_ = with_curve ? weak_rows(rows_, structure_, windows_, best_.parameters)
+                       : weak_rows(rows_, structure_, windows_);
     if (static_cast<double>(weak_.terms.rows()) <
         kIdentification.windows_per_term * static_cast<double>(weak_.terms.cols())) {
       return false;
@@ -225,8 +155,8 @@ class Search {
         places.push_back(place_of(SixAxisPlace::thrusters) + i);
       }
     }
-    for (std::size_t k = 0; with_curve && k < kCurve.size(); ++k) {
-      if (active_[k]) {
+    for (std::size_t k = 0; with_curve && k < kThrustCurve.size(); ++k) {
+      if (windows_.sought[k]) {
         places.push_back(place_of(SixAxisPlace::curve(rows_.thrusters.size()) + k));
       }
     }
@@ -262,7 +192,7 @@ class Search {
     for (std::size_t i = 0; i < best_.free.size(); ++i) {
       const Eigen::Index k = best_.free[i] - first;
       if (k >= 0 && blur(place_of(i)) > kIdentification.most_blur) {
-        active_[static_cast<std::size_t>(k)] = false;
+        windows_.sought[static_cast<std::size_t>(k)] = false;
         best_.parameters(first + k) = 0.0;
       }
     }
@@ -272,11 +202,11 @@ class Search {
   bool move() {
     bool moved = false;
     const Eigen::Index first = place_of(SixAxisPlace::curve(rows_.thrusters.size()));
-    for (std::size_t k = 0; k < kCurve.size(); ++k) {
-      if (active_[k]) {
+    for (std::size_t k = 0; k < kThrustCurve.size(); ++k) {
+      if (windows_.sought[k]) {
         const double step =
             std::clamp(best_.parameters(first + place_of(k)), -kMostStep[k], kMostStep[k]);
-        double& value = curve_.*kCurve[k];
+        double& value = windows_.curve.*kThrustCurve[k];
         value = std::clamp(value + step, 0.0, kMostValue[k]);
         moved = moved || std::abs(step) > kIdentification.least_curve_step * kMostStep[k];
       }
@@ -331,10 +261,7 @@ class Search {
 
   const SixAxisRows& rows_;
   SixAxisStructure structure_;
-  Eigen::MatrixXd arms_;
-  WindowShape shape_;
-  ThrustCurve curve_;
-  std::array<bool, SixAxisPlace::curve_size> active_{};
+  SixAxisWindows windows_;
   WeakRows weak_;
   FreeFit free_;
   MinimumDistance best_;
@@ -344,9 +271,9 @@ class Search {
 SixAxisFit Search::collected() const {
   SixAxisFit fit;
   fit.thrusters = rows_.thrusters;
-  fit.curve = curve_;
+  fit.curve = windows_.curve;
   fit.windows = static_cast<std::size_t>(weak_.terms.rows());
-  fit.window_s = 2.0 * shape_.half_s;
+  fit.window_s = 2.0 * windows_.shape.half_s;
   fit.misfit = std::max(1.0, best_.distance / std::max(errors_.expected_distance,
                                                        std::numeric_limits<double>::min()));
   const std::vector<std::string> names = names_of(rows_.thrusters);
@@ -355,15 +282,15 @@ SixAxisFit Search::collected() const {
   as_matrix(fit.free_terms) = free_.coefficients.topRows(terms);
   fit.covariance = Matrix(names.size(), names.size());
   auto covariance = as_matrix(fit.covariance);
-  const double student = kIdentification.student90 / kNormal90;
   covariance(best_.free, best_.free) =
-      student * student * fit.misfit * errors_.covariance + velocity_covariance();
+      kStudent * kStudent * fit.misfit * errors_.covariance + velocity_covariance();
   const Eigen::VectorXd blur = blurs(errors_.covariance);
   const std::size_t curve = SixAxisPlace::curve(rows_.thrusters.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto found = std::ranges::find(best_.free, place_of(i));
     const bool is_sought = found != best_.free.end();
-    const double value = i >= curve ? fit.curve.*kCurve[i - curve] : best_.parameters(place_of(i));
+    const double value =
+        i >= curve ? fit.curve.*kThrustCurve[i - curve] : best_.parameters(place_of(i));
     if (is_sought) {
       covariance(place_of(i), place_of(i)) += std::pow(allowance(i), 2.0);
     }
@@ -411,6 +338,48 @@ Eigen::VectorXd terms_at(const MotionTerms& terms, std::span<const double, kSixA
   return values;
 }
 
+// The search of the window with the least errors.
+Search best_search(const SixAxisRows& rows, const SixAxisSettings& options) {
+  std::optional<Search> best;
+  double least = std::numeric_limits<double>::infinity();
+  SixAxisSettings from = options;
+  for (const double half_s : kIdentification.half_windows_s) {
+    Search search(rows, from, half_s);
+    if (search.run() && search.log_errors() < least) {
+      least = search.log_errors();
+      from.start = search.windows().curve;  // near the next one's
+      best.emplace(std::move(search));
+    }
+  }
+  if (!best) {
+    throw InputError(
+        "too few rows: six axes take " +
+        std::to_string(static_cast<int>(kIdentification.windows_per_term *
+                                        static_cast<double>(60 + 2 * rows.thrusters.size()))) +
+        " windows of 0.5 to 8 s without a gap, with five rows or more each");
+  }
+  return *std::move(best);
+}
+
+// What was never seen: a thruster counts as alike both ways.
+void complete(const std::vector<Eigen::Index>& free, std::size_t thrusters, SixAxisFit& fit,
+              Eigen::VectorXd& parameters) {
+  for (std::size_t i = 0; i < 2 * thrusters; ++i) {
+    const std::size_t place = SixAxisPlace::thrusters + i;
+    if (std::ranges::find(free, place_of(place)) == free.end()) {
+      parameters(place_of(place)) = parameters(place_of(SixAxisPlace::thrusters + (i ^ 1U)));
+      fit.parameters[place].value = parameters(place_of(place));
+    }
+  }
+}
+
+void set_errors(const Eigen::MatrixXd& covariance, ParameterFit& fit) {
+  as_matrix(fit.covariance) = covariance;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    fit.parameters[i].error = std::sqrt(covariance(place_of(i), place_of(i)));
+  }
+}
+
 }  // namespace
 
 std::vector<double> thruster_speeds(const SixAxisRows& rows, const ThrustCurve& curve) {
@@ -438,17 +407,27 @@ std::vector<double> thruster_speeds(const SixAxisRows& rows, const ThrustCurve& 
   return speeds;
 }
 
+SixAxisVehicle::SixAxisVehicle(const SixAxisFit& fit)
+    : terms_(MotionTerms::spatial(fit.thrusters.size())) {
+  const SixAxisStructure structure(fit.thrusters);
+  Eigen::VectorXd values(structure.parameters());
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    values(i) = fit.parameters[static_cast<std::size_t>(i)].value;
+  }
+  forces_ = structure.forces(values, place_of(terms_.size()));
+  mass_ = structure.mass(values).fullPivLu();
+}
+
+SixVector SixAxisVehicle::acceleration(std::span<const double, kSixAxes> velocity,
+                                       std::span<const double, 3> down,
+                                       std::span<const double> speeds) const {
+  return as_array(mass_.solve(forces_ * terms_at(terms_, velocity, down, speeds)));
+}
+
 SixVector SixAxisFit::acceleration(std::span<const double, kSixAxes> velocity,
                                    std::span<const double, 3> down,
                                    std::span<const double> speeds) const {
-  const SixAxisStructure structure(thrusters);
-  Eigen::VectorXd values(structure.parameters());
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    values(i) = parameters[static_cast<std::size_t>(i)].value;
-  }
-  const Eigen::VectorXd terms = terms_at(structure.terms(), velocity, down, speeds);
-  return as_array(
-      structure.mass(values).fullPivLu().solve(structure.forces(values, terms.size()) * terms));
+  return SixAxisVehicle(*this).acceleration(velocity, down, speeds);
 }
 
 SixVector SixAxisFit::free_acceleration(std::span<const double, kSixAxes> velocity,
@@ -459,27 +438,104 @@ SixVector SixAxisFit::free_acceleration(std::span<const double, kSixAxes> veloci
 }
 
 SixAxisFit fit_six_axes(const SixAxisRows& rows, const SixAxisSettings& options) {
-  std::optional<Search> best;
-  double least = std::numeric_limits<double>::infinity();
-  SixAxisSettings from = options;
-  for (const double half_s : kIdentification.half_windows_s) {
-    Search search(rows, from, half_s);
-    if (search.run() && search.log_errors() < least) {
-      least = search.log_errors();
-      from.start = search.curve();  // near the next one's
-      best.emplace(std::move(search));
-    }
-  }
-  if (!best) {
-    throw InputError(
-        "too few rows: six axes take " +
-        std::to_string(static_cast<int>(kIdentification.windows_per_term *
-                                        static_cast<double>(60 + 2 * rows.thrusters.size()))) +
-        " windows of 0.5 to 8 s without a gap, with five rows or more each");
-  }
-  SixAxisFit fit = best->collected();
+  SixAxisFit fit = best_search(rows, options).collected();
   require_inertias(fit);
   return fit;
+}
+
+ExpectedSixAxisFit::ExpectedSixAxisFit(const SixAxisRows& rows, const SixAxisSettings& options)
+    : structure_(rows.thrusters) {
+  const Search search = best_search(rows, options);
+  now_ = search.collected();
+  require_inertias(now_);
+  misfit_ = now_.misfit;
+  windows_ = search.windows();
+  parameters_ = search.best().parameters;
+  parameters_.tail(place_of(SixAxisPlace::curve_size)).setZero();
+  complete(search.best().free, rows.thrusters.size(), now_, parameters_);
+  const std::vector<Eigen::Index>& free = search.best().free;
+  floor_ = as_matrix(now_.covariance);
+  floor_(free, free) -= kStudent * kStudent * misfit_ * search.covariance();
+  const Eigen::Index terms = search.weak().terms.cols();
+  const Eigen::MatrixXd mass = structure_.mass(parameters_);
+  const Eigen::MatrixXd coefficients =
+      mass.fullPivLu().solve(structure_.forces(parameters_, terms)).transpose();
+  const Eigen::MatrixXd jacobian = structure_.residual(coefficients, parameters_).jacobian;
+  const Eigen::MatrixXd metric =
+      equilibrated_inverse(mass * search.free().noise * mass.transpose());
+  const Eigen::MatrixXd by_scores = metric * mass;
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    slopes_.emplace_back(jacobian(Eigen::seqN(axis, terms, 6), Eigen::all));
+  }
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    weighted_.emplace_back(Eigen::MatrixXd::Zero(terms, jacobian.cols()));
+    by_scores_.push_back(weighted_.back());
+    for (Eigen::Index other = 0; other < 6; ++other) {
+      weighted_.back() += metric(axis, other) * slopes_[static_cast<std::size_t>(other)];
+      by_scores_.back() += by_scores(other, axis) * slopes_[static_cast<std::size_t>(other)];
+    }
+  }
+  noise_ = window_noise(search.weak(), search.free(), windows_.shape);
+  told_ = information(search.free().gram, search.weak().terms);
+  const Eigen::MatrixXd expected = covariance_of(told_);
+  const double factor =
+      std::max(1.0, median_ratio(as_matrix(now_.covariance)(free, free), expected(free, free)));
+  for (Eigen::VectorXd& covariance : noise_.autocovariance) {
+    covariance *= factor;
+  }
+  told_.gradients *= factor;
+  set_errors(covariance_of(told_), now_);
+}
+
+ParameterFit ExpectedSixAxisFit::after(const WeakRows& drives) const {
+  ParameterFit fit = now_;
+  if (drives.terms.rows() > 0) {
+    Information told = information(drives);
+    told.hessian += told_.hessian;
+    told.gradients += told_.gradients;
+    set_errors(covariance_of(told), fit);
+  }
+  return fit;
+}
+
+WeakRows ExpectedSixAxisFit::windows(const SixAxisRows& drives) const {
+  return weak_rows(drives, structure_, windows_, parameters_);
+}
+
+ExpectedFit::Information ExpectedSixAxisFit::information(const WeakRows& drives) const {
+  return information(drives.terms.transpose() * drives.terms, drives.terms);
+}
+
+// For coefficients on the structure: H = Σ_a J_aᵀ G (N⁻¹ J)_a, Σ_a ((N⁻¹M)ᵀJ)_aᵀ S_a ((N⁻¹M)ᵀJ)_a,
+// distance_hessian() and gradient_covariance() without matrices of axes · terms.
+ExpectedFit::Information ExpectedSixAxisFit::information(const Eigen::MatrixXd& gram,
+                                                         const Eigen::MatrixXd& terms) const {
+  const std::vector<Eigen::MatrixXd> scores = expected_axis_scores(terms, noise_);
+  const Eigen::Index count = parameters_.size();
+  Information told{Eigen::MatrixXd::Zero(count, count), Eigen::MatrixXd::Zero(count, count)};
+  for (std::size_t axis = 0; axis < kSixAxes; ++axis) {
+    told.hessian += slopes_[axis].transpose() * (gram * weighted_[axis]);
+    told.gradients += by_scores_[axis].transpose() * (scores[axis] * by_scores_[axis]);
+  }
+  return told;
+}
+
+Eigen::MatrixXd ExpectedSixAxisFit::covariance_of(const Information& told) const {
+  std::vector<Eigen::Index> sought;
+  for (Eigen::Index place = 1; place < parameters_.size(); ++place) {
+    if (told.hessian(place, place) > 0.0) {
+      sought.push_back(place);
+    }
+  }
+  Eigen::MatrixXd covariance = floor_;
+  for (Eigen::Index place = 1; place < parameters_.size(); ++place) {
+    covariance(place, place) += std::pow(kUnseen * parameters_(place), 2.0);
+  }
+  const Eigen::MatrixXd inverse = equilibrated_inverse(told.hessian(sought, sought));
+  covariance(sought, sought) = floor_(sought, sought) + kStudent * kStudent * misfit_ * inverse *
+                                                            told.gradients(sought, sought) *
+                                                            inverse;
+  return covariance;
 }
 
 }  // namespace kelpie

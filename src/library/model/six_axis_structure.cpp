@@ -39,12 +39,12 @@ SixAxisStructure::SixAxisStructure(std::span<const PlacedThruster> thrusters)
     add_force(place_of(axis), terms_.find({.form = TermForm::square_law, .a = axis}),
               SixAxisPlace::quadratic_drag + axis, -1.0);
   }
-  for (const auto& [row, column, factor] : {std::tuple{0, 4, 1.0}, std::tuple{4, 0, 1.0},
-                                            std::tuple{1, 3, -1.0}, std::tuple{3, 1, -1.0}}) {
+  for (const auto& [row, column, factor] : {std::tuple{0U, 4U, 1.0}, std::tuple{4U, 0U, 1.0},
+                                            std::tuple{1U, 3U, -1.0}, std::tuple{3U, 1U, -1.0}}) {
     add_inertia(row, column, SixAxisPlace::low_centre, factor);
   }
-  for (const auto& [row, column, factor] : {std::tuple{1, 5, 1.0}, std::tuple{5, 1, 1.0},
-                                            std::tuple{2, 4, -1.0}, std::tuple{4, 2, -1.0}}) {
+  for (const auto& [row, column, factor] : {std::tuple{1U, 5U, 1.0}, std::tuple{5U, 1U, 1.0},
+                                            std::tuple{2U, 4U, -1.0}, std::tuple{4U, 2U, -1.0}}) {
     add_inertia(row, column, SixAxisPlace::forward_centre, factor);
   }
   for (std::size_t c = 0; c < 3; ++c) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/LU>
 #include <span>
 #include <vector>
 
@@ -54,6 +54,21 @@ class SixAxisStructure {
   Eigen::Index parameters_;
   std::vector<Entry> inertias_;
   std::vector<Entry> forces_;
+};
+
+/// The vehicle of a fit, for many calls of SixAxisFit::acceleration().
+class SixAxisVehicle {
+ public:
+  explicit SixAxisVehicle(const SixAxisFit& fit);
+
+  /// Requirements as of SixAxisFit::acceleration(). Allocates.
+  SixVector acceleration(std::span<const double, kSixAxes> velocity,
+                         std::span<const double, 3> down, std::span<const double> speeds) const;
+
+ private:
+  MotionTerms terms_;
+  Eigen::MatrixXd forces_;  ///< Θ
+  Eigen::FullPivLU<Eigen::MatrixXd> mass_;
 };
 
 }  // namespace kelpie

@@ -9,7 +9,6 @@
 
 #include "core/eigen.hpp"
 #include "core/normal_equations.hpp"
-#include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/expected_fit.hpp"
@@ -146,14 +145,6 @@ Eigen::MatrixXd structure_coefficients(const Eigen::VectorXd& parameters, Eigen:
   const Eigen::VectorXd value = structure_residual(none, parameters).value;
   const Eigen::MatrixXd theta = -Eigen::Map<const Eigen::MatrixXd>(value.data(), 3, terms);
   return (planar_mass(parameters).inverse() * theta).transpose();
-}
-
-double median_ratio(const Eigen::MatrixXd& above, const Eigen::MatrixXd& below) {
-  std::vector<double> ratios;
-  for (Eigen::Index i = 0; i < above.rows(); ++i) {
-    ratios.push_back(above(i, i) / std::max(below(i, i), std::numeric_limits<double>::min()));
-  }
-  return quantile(ratios, 0.5);
 }
 
 void require_windows(const WeakRows& weak) {
@@ -295,7 +286,7 @@ ExpectedPlanarFit::ExpectedPlanarFit(const PlanarRows& rows)
   now_ = fit_of(free_.gram, free_.scores, weak_);
 }
 
-PlanarFit ExpectedPlanarFit::after(const WeakRows& drives) const {
+ParameterFit ExpectedPlanarFit::after(const WeakRows& drives) const {
   if (drives.terms.rows() == 0) {
     return now_;
   }
@@ -319,8 +310,7 @@ Eigen::MatrixXd ExpectedPlanarFit::covariance_of(const Eigen::MatrixXd& gram,
   return sandwich(expected, structure, best).covariance;
 }
 
-double ExpectedPlanarFit::evidence(const WeakRows& drives, const std::vector<double>& first,
-                                   const std::vector<double>& second) const {
+ExpectedFit::Information ExpectedPlanarFit::information(const WeakRows& drives) const {
   const FreeFit changed{.coefficients = free_.coefficients,
                         .gram = drives.terms.transpose() * drives.terms,
                         .noise = free_.noise,
@@ -330,19 +320,8 @@ double ExpectedPlanarFit::evidence(const WeakRows& drives, const std::vector<dou
   for (Eigen::Index place = 0; place < best.parameters.size(); ++place) {
     best.free.push_back(place);
   }
-  Eigen::MatrixXd changes(best.parameters.size(), 2);
-  changes << as_vector(first), as_vector(second);
-  const Eigen::MatrixXd pull = distance_hessian(changed, structure, best) * changes;
-  const Eigen::Matrix2d curvature = changes.transpose() * pull;
-  const Eigen::Matrix2d spread =
-      misfit_ * changes.transpose() * gradient_covariance(changed, structure, best) * changes +
-      pull.transpose() * as_matrix(now_.covariance) * pull;
-  const Eigen::Matrix2d information =
-      curvature * equilibrated_inverse(spread) * curvature.transpose();
-  const double own = std::min(information(0, 0), information(1, 1));
-  const double shared = information(0, 1) * information(0, 1) /
-                        std::max(information(0, 0) * information(1, 1), 1e-300);
-  return 0.5 * own * std::max(0.0, 1.0 - shared);
+  return {distance_hessian(changed, structure, best),
+          gradient_covariance(changed, structure, best)};
 }
 
 PlanarFit ExpectedPlanarFit::fit_of(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& scores,

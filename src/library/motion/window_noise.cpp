@@ -117,11 +117,13 @@ WindowNoise window_noise(const WeakRows& rows, const FreeFit& fit, const WindowS
   return noise;
 }
 
-Eigen::MatrixXd expected_scores(const Eigen::MatrixXd& terms, const WindowNoise& noise) {
+std::vector<Eigen::MatrixXd> expected_axis_scores(const Eigen::MatrixXd& terms,
+                                                  const WindowNoise& noise) {
   const Eigen::Index n = terms.rows();
   const Eigen::Index count = terms.cols();
   const Eigen::Index axes = noise.autocovariance.front().size();
-  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(axes * count, axes * count);
+  std::vector<Eigen::MatrixXd> scores(static_cast<std::size_t>(axes),
+                                      Eigen::MatrixXd::Zero(count, count));
   for (std::size_t k = 0; k < noise.autocovariance.size() && static_cast<Eigen::Index>(k) < n;
        ++k) {
     const auto lag = static_cast<Eigen::Index>(k);
@@ -130,9 +132,20 @@ Eigen::MatrixXd expected_scores(const Eigen::MatrixXd& terms, const WindowNoise&
       products = (products + products.transpose()).eval();
     }
     for (Eigen::Index axis = 0; axis < axes; ++axis) {
-      scores(Eigen::seqN(axis, count, axes), Eigen::seqN(axis, count, axes)) +=
-          noise.autocovariance[k](axis) * products;
+      scores[static_cast<std::size_t>(axis)] += noise.autocovariance[k](axis) * products;
     }
+  }
+  return scores;
+}
+
+Eigen::MatrixXd expected_scores(const Eigen::MatrixXd& terms, const WindowNoise& noise) {
+  const std::vector<Eigen::MatrixXd> by_axis = expected_axis_scores(terms, noise);
+  const Eigen::Index count = terms.cols();
+  const auto axes = static_cast<Eigen::Index>(by_axis.size());
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(axes * count, axes * count);
+  for (Eigen::Index axis = 0; axis < axes; ++axis) {
+    scores(Eigen::seqN(axis, count, axes), Eigen::seqN(axis, count, axes)) =
+        by_axis[static_cast<std::size_t>(axis)];
   }
   return scores;
 }

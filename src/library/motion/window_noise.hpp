@@ -21,7 +21,12 @@ struct WindowNoise {
 /// errors. Requires more windows than terms. Cost: windows × terms² × lags. Allocates.
 WindowNoise window_noise(const WeakRows& rows, const FreeFit& fit, const WindowShape& shape);
 
-/// Covariance of the scores Σ_t F_tk e_ta of windows one stride apart, as FreeFit::scores.
+/// Covariance of the scores Σ_t F_tk e_ta of windows one stride apart, terms × terms for each axis
+/// a: errors of axes are independent.
+std::vector<Eigen::MatrixXd> expected_axis_scores(const Eigen::MatrixXd& terms,
+                                                  const WindowNoise& noise);
+
+/// The same as FreeFit::scores.
 Eigen::MatrixXd expected_scores(const Eigen::MatrixXd& terms, const WindowNoise& noise);
 
 }  // namespace kelpie

@@ -14,6 +14,7 @@
 #include "cli/log_options.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
+#include "cli/six_axis_log.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
 #include "format/certificate_json.hpp"
@@ -24,7 +25,6 @@
 #include "report/verdicts.hpp"
 #include "study/alignment.hpp"
 #include "study/identification.hpp"
-#include "study/six_axes.hpp"
 #include "vehicle/scenario_file.hpp"
 
 namespace kelpie::cli {
@@ -62,9 +62,7 @@ struct IdentifyArguments : IdentificationOptions {
   std::optional<int> only;
   std::optional<double> mass_kg;
   std::optional<double> surge_added_mass_kg;
-  std::string vehicle;
-  std::string frame;
-  std::string volts;
+  SixAxisOptions six;
   std::string out = "out/identify";
   std::vector<std::string> engines;
   AnswerOptions answer;
@@ -156,19 +154,6 @@ study::CertificateList certificates_of(const format::IdentifiedVehicle& vehicle,
   return study::certify(engines, body, drive);
 }
 
-// Thrusts of --thrust, N per square of the log's unit, as of full commands.
-study::KnownThrust of_full_commands(study::KnownThrust wish,
-                                    const vehicle::VehicleParameters& vehicle) {
-  for (auto& [name, value] : wish.thrust) {
-    const auto thruster = std::ranges::find(vehicle.thrusters, name, &vehicle::Thruster::name);
-    if (thruster != vehicle.thrusters.end() &&
-        vehicle.command_unit == vehicle::CommandUnit::speed) {
-      value *= thruster->max_speed_rps * thruster->max_speed_rps;
-    }
-  }
-  return wish;
-}
-
 // An identification with what its files need.
 struct Identified {
   study::Identification found;
@@ -181,29 +166,24 @@ struct Identified {
 std::optional<Identified> on_six_axes(const IdentifyArguments& options,
                                       const study::KnownThrust& wish,
                                       const vehicle::VehicleParameters& vehicle, std::string& why) {
-  PlanOptions plain = options;
-  const bool find_times = plain.align != "none";
-  if (plain.align == "auto") {
-    plain.align = "none";  // the fit finds lag and delay itself
-  }
-  const study::LearnPlan log = plan_log(plain).plan;
-  const auto columns =
-      study::six_axis_columns(log.data, log.settings.shared.states, vehicle, options.volts, why);
-  if (!columns) {
+  const std::optional<SixAxisLog> log = six_axis_log(options, options.six, vehicle, why);
+  if (!log) {
     return std::nullopt;
   }
-  const double neutral = log.alignment.alignment.actuators.empty() ? study::kRestUs : 0.0;
-  Identified result{.found = {}, .frame = body_frame(options.frame, true)};
-  const SixAxisSettings how{.start = {.lag_s = find_times ? 0.1 : 0.0}, .find_times = find_times};
-  result.found =
-      study::identify_six_axes(log.data, log.split, *columns, vehicle, result.frame, neutral,
-                               of_full_commands(wish, vehicle), options.only, how);
-  result.found.alignment = find_times ? "lag and delay of the thrusters are found with the rest"
-                                      : "thrusters follow their commands at once, as asked";
+  study::KnownThrust known = wish;
+  known.thrust = of_full_commands(wish.thrust, vehicle);
+  const study::LearnPlan& plan = log->plan;
+  Identified result{.found = {}, .frame = log->frame};
+  result.found = study::identify_six_axes(plan.data, plan.split, log->columns, vehicle, log->frame,
+                                          log->neutral, known, options.only, log->how);
+  result.found.alignment = log->how.find_times
+                               ? "lag and delay of the thrusters are found with the rest"
+                               : "thrusters follow their commands at once, as asked";
   if (result.found.scale != study::ScaleSource::none) {
-    result.vehicle = format::identified_on_six_axes(result.found, vehicle, options.vehicle);
-    result.drive = format::recorded_drive(*result.vehicle, result.found, log.data, log.split,
-                                          *columns, vehicle, result.frame, neutral, options.only);
+    result.vehicle = format::identified_on_six_axes(result.found, vehicle, options.six.vehicle);
+    result.drive =
+        format::recorded_drive(*result.vehicle, result.found, plan.data, plan.split, log->columns,
+                               vehicle, result.frame, log->neutral, options.only);
   }
   return result;
 }
@@ -216,11 +196,12 @@ Identified in_plane(const IdentifyArguments& options, const study::KnownThrust& 
   const study::PlanarColumns columns =
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
   Identified result{.found = study::identify(log.data, log.split, columns, wish, options.only),
-                    .frame = body_frame(options.frame, false)};
+                    .frame = body_frame(options.six.frame, false)};
   result.found.alignment = study::alignment_text(log.alignment, log.data.rate_hz);
   result.found.lags = log.lags;
   if (result.found.scale != study::ScaleSource::none) {
-    result.vehicle = format::identified_vehicle(result.found, result.frame, base, options.vehicle);
+    result.vehicle =
+        format::identified_vehicle(result.found, result.frame, base, options.six.vehicle);
     result.drive = format::recorded_drive(*result.vehicle, log.data, log.split,
                                           format::drive_columns(columns, result.found),
                                           result.frame, options.only);
@@ -257,16 +238,17 @@ file::FileSet files_of(const Identified& result, const std::vector<EngineFile>& 
 void run_identify(const IdentifyArguments& given) {
   given.answer.begin();
   IdentifyArguments options = given;
-  if (!options.volts.empty()) {
-    options.log.also.push_back(options.volts);
+  if (!options.six.volts.empty()) {
+    options.log.also.push_back(options.six.volts);
   }
-  body_frame(options.frame, false);  // a wrong name is told before a log is read
-  const Base base = options.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.vehicle));
+  body_frame(options.six.frame, false);  // a wrong name is told before a log is read
+  const Base base =
+      options.six.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.six.vehicle));
   const study::KnownThrust wish = known_thrust(options, base);
   const std::vector<EngineFile> wanted = wanted_files(options.engines);
   Identified result = identified(options, wish, base);
   std::vector<std::string> inputs = options.files();
-  inputs.push_back(options.vehicle);
+  inputs.push_back(options.six.vehicle);
   const file::OutFolder out = take_out_folder(options.out, all_files(), inputs);
   if (result.vehicle) {
     result.vehicle->usual_speed = format::usual_speed(result.drive);
@@ -306,14 +288,14 @@ void add_identify(CLI::App& app) {
       ->check(within(kLeastMass, kMostScale))
       ->excludes(command->get_option("--thrust"));
   add_file(
-      command, "--vehicle", options->vehicle,
+      command, "--vehicle", options->six.vehicle,
       "vehicle file (docs/reference/simulator.md): with the places of the log's thrusters all six "
       "axes are identified, else it tells what the plane doesn't show; its mass, and without "
       "--thrust "
       "its added mass in surge, give the scale");
-  command->add_option("--volts", options->volts,
+  command->add_option("--volts", options->six.volts,
                       "column with the supply of the thrusters in V, for six axes");
-  add_frame_option(*command, options->frame);
+  add_frame_option(*command, options->six.frame);
   add_list(command, "--for", options->engines,
            "simulators to write for, separated by commas; else all: kelpie, gazebo, gazebo_plugin, "
            "uuv_simulator, stonefish, blue, orca4, mss, python_vehicle_simulator, ardupilot");

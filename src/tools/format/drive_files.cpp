@@ -84,23 +84,30 @@ std::string drive_csv(const PlannedDrive& drive) {
 
 std::string drive_json(const PlannedDrive& drive) {
   const study::DrivePlan& plan = drive.plan;
-  return file::json_text({{"format", "kelpie-plan"},
-                          {"version", 1},
-                          {"log", drive.source},
-                          {"bounds",
-                           {{"time_s", drive.bounds.time_s},
-                            {"speed_m_s", drive.bounds.speed_m_s},
-                            {"radius_m", drive.bounds.radius_m}}},
-                          {"number", drive.parts ? "nats" : "half width of 90 % over the size"},
-                          {"aim", drive.aim},
-                          {"reached", plan.reached},
-                          {"duration_s", plan.duration_s()},
-                          {"farthest_m", plan.farthest_m},
-                          {"fastest_m_s", plan.fastest_m_s},
-                          {"names", plan.names},
-                          {"countdown", file::list(plan.countdown, moment_json)},
-                          {"thrusters", drive.thrusters},
-                          {"manoeuvres", file::list(plan.manoeuvres, manoeuvre_json)}});
+  file::Json document = {{"format", "kelpie-plan"},
+                         {"version", 1},
+                         {"log", drive.source},
+                         {"bounds",
+                          {{"time_s", drive.bounds.time_s},
+                           {"speed_m_s", drive.bounds.speed_m_s},
+                           {"radius_m", drive.bounds.radius_m}}},
+                         {"number", drive.parts ? "nats" : "half width of 90 % over the size"},
+                         {"aim", drive.aim},
+                         {"reached", plan.reached},
+                         {"duration_s", plan.duration_s()},
+                         {"farthest_m", plan.extent.farthest_m},
+                         {"fastest_m_s", plan.extent.fastest_m_s}};
+  if (drive.six_axes) {
+    document["bounds"]["depth_m"] = drive.bounds.depth_m;
+    document["bounds"]["tilt_rad"] = drive.bounds.tilt_rad;
+    document["depth_m"] = plan.extent.depth_m;
+    document["tilt_rad"] = plan.extent.tilt_rad;
+  }
+  document["names"] = plan.names;
+  document["countdown"] = file::list(plan.countdown, moment_json);
+  document["thrusters"] = drive.thrusters;
+  document["manoeuvres"] = file::list(plan.manoeuvres, manoeuvre_json);
+  return file::json_text(document);
 }
 
 bool has_pulses(const PlannedDrive& drive) {

@@ -9,7 +9,7 @@
 
 namespace kelpie::format {
 
-/// A planned drive with what its files say: docs/howto/identify.md, "Drive this next".
+/// A planned drive with the content of the drive's files: docs/howto/identify.md, "Drive this next".
 struct PlannedDrive {
   std::string source;  ///< log
   std::vector<std::string> thrusters{};
@@ -18,6 +18,7 @@ struct PlannedDrive {
   double aim = 0.05;   ///< share, or nats
   bool parts = false;  ///< two causes, not parameters
   bool has_scale = false;
+  bool six_axes = false;  ///< depth and tilt count
   /// The command of a thruster for a speed of the fit.
   std::function<double(std::size_t thruster, double speed)> command =
       [](std::size_t, double speed) { return speed; };

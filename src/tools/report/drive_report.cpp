@@ -14,12 +14,17 @@
 #include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "core/angle.hpp"
 
 namespace kelpie::report {
 namespace {
 
 constexpr std::size_t kMostLines = 7;  // of a figure
 constexpr double kMostShare = 10.0;    // an interval wider than the value says nothing
+
+double degrees(double rad) {
+  return rad / kRadPerDegree;
+}
 
 std::string number_of(const format::PlannedDrive& drive, double number) {
   if (drive.parts) {
@@ -121,14 +126,34 @@ std::string track_figure(const format::PlannedDrive& drive) {
                        "Track of the identified vehicle");
   figure.make_square();
   std::vector<chart::Point> track;
-  for (std::size_t i = 0; i < drive.plan.x_m.size(); ++i) {
-    track.push_back({drive.plan.x_m[i], drive.plan.y_m[i]});
+  for (const study::DriveMotion& motion : drive.plan.track) {
+    track.push_back({motion.position_m[0], motion.position_m[1]});
   }
   figure.dots(track, 0, "identified vehicle");
   return figure.html(
       fmt::format("At most {:.1f} m from the start and {:.2f} m/s, for all vehicles "
                   "that the log allows",
-                  drive.plan.farthest_m, drive.plan.fastest_m_s));
+                  drive.plan.extent.farthest_m, drive.plan.extent.fastest_m_s));
+}
+
+// Depth, roll and pitch over time.
+std::string attitude_figure(const format::PlannedDrive& drive) {
+  chart::Figure figure({.label = "time in s"}, {.label = "m, °"},
+                       "Depth and attitude of the identified vehicle");
+  std::vector<std::vector<chart::Point>> lines(3);
+  for (std::size_t i = 0; i < drive.plan.track.size(); ++i) {
+    const double t_s = study::kManoeuvreStepS * static_cast<double>(i);
+    const study::DriveMotion& motion = drive.plan.track[i];
+    lines[0].push_back({t_s, motion.position_m[2]});
+    lines[1].push_back({t_s, degrees(motion.angles_rad[0])});
+    lines[2].push_back({t_s, degrees(motion.angles_rad[1])});
+  }
+  figure.line(lines[0], 0, "depth below the start in m");
+  figure.line(lines[1], 1, "roll in °");
+  figure.line(lines[2], 2, "pitch in °");
+  return figure.html(
+      fmt::format("At most {:.1f} m and {:.0f}°, for all vehicles that the log allows",
+                  drive.plan.extent.depth_m, degrees(drive.plan.extent.tilt_rad)));
 }
 
 std::string drive_headline(const format::PlannedDrive& drive) {
@@ -150,10 +175,16 @@ std::string drive_verdict(const format::PlannedDrive& drive) {
   const study::DrivePlan& plan = drive.plan;
   std::string text = drive_headline(drive) + "\n";
   text += fmt::format(
-      "{} manoeuvre{}; at most {:.1f} m from the start (bound {:g}) and {:.2f} m/s (bound {:g}),\n"
-      "by all vehicles that the log allows\n\n",
-      plan.manoeuvres.size(), plan.manoeuvres.size() == 1 ? "" : "s", plan.farthest_m,
-      drive.bounds.radius_m, plan.fastest_m_s, drive.bounds.speed_m_s);
+      "{} manoeuvre{}; at most {:.1f} m from the start (bound {:g}) and {:.2f} m/s (bound {:g}),\n",
+      plan.manoeuvres.size(), plan.manoeuvres.size() == 1 ? "" : "s", plan.extent.farthest_m,
+      drive.bounds.radius_m, plan.extent.fastest_m_s, drive.bounds.speed_m_s);
+  if (drive.six_axes) {
+    text +=
+        fmt::format("{:.1f} m of depth (bound {:g}) and {:.0f}° of roll or pitch (bound {:.0f}),\n",
+                    plan.extent.depth_m, drive.bounds.depth_m, degrees(plan.extent.tilt_rad),
+                    degrees(drive.bounds.tilt_rad));
+  }
+  text += "by all vehicles that the log allows\n\n";
   text += chart::table_text(numbers_view(drive));
   if (!drive.has_scale && !drive.parts) {
     text += "Of ratios to the surge inertia; --thrust NAME=K gives the scale.\n";
@@ -173,11 +204,12 @@ std::string drive_html(const format::PlannedDrive& drive) {
     return chart::html_page("kelpie: plan, " + log, opening,
                             {{"What is known", chart::html_table(numbers_view(drive))}});
   }
-  return chart::html_page("kelpie: plan, " + log, opening,
-                          {{"Countdown", countdown_figure(drive)},
-                           {"What is known", chart::html_table(numbers_view(drive))},
-                           {"Manoeuvres", chart::html_table(manoeuvres_view(drive))},
-                           {"Track", track_figure(drive)}});
+  return chart::html_page(
+      "kelpie: plan, " + log, opening,
+      {{"Countdown", countdown_figure(drive)},
+       {"What is known", chart::html_table(numbers_view(drive))},
+       {"Manoeuvres", chart::html_table(manoeuvres_view(drive))},
+       {"Track", track_figure(drive) + (drive.six_axes ? attitude_figure(drive) : "")}});
 }
 
 }  // namespace kelpie::report

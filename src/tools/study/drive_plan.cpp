@@ -4,7 +4,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/angle.hpp"
@@ -12,8 +16,8 @@
 #include "core/quantile.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
 #include "motion/tuning.hpp"
-#include "motion/weak_form.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -25,21 +29,36 @@ constexpr double kCoastS = 6.0;         // after a drive, thrusters off
 constexpr const char* kLoad = "load";   // a change of all inertias
 constexpr double kMostTurnsPerS = 1.0;  // of a plausible vehicle
 
-void advance_by(const PlanarVehicle& vehicle, std::span<const double> speeds, double dt,
-                PlanarMotion& motion) {
-  const PlanarVector slope = vehicle.acceleration(motion.velocity, speeds);
-  PlanarVector middle = motion.velocity;
-  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
-    middle[axis] += 0.5 * dt * slope[axis];
+// What a parameter is, by its name.
+enum class ParameterKind : std::uint8_t {
+  inertia,
+  size,      ///< drags, thrusts, the righting moment
+  coupling,  ///< of two inertias
+  offset,    ///< a force or moment that may be 0
+  arm,
+  angle,
+  curve,  ///< of the thrust curve
+};
+
+ParameterKind kind_of(const std::string& name) {
+  const std::string own = name.substr(name.rfind('.') + 1);
+  const auto is_any = [&](std::initializer_list<const char*> names) {
+    return std::ranges::find(names, own) != names.end();
+  };
+  if (is_any({"sway_yaw_inertia", "low_centre", "forward_centre"})) {
+    return ParameterKind::coupling;
   }
-  const PlanarVector better = vehicle.acceleration(middle, speeds);
-  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
-    motion.velocity[axis] += dt * better[axis];
+  if (is_any({"surge_force", "sway_force", "yaw_moment", "net_weight", "roll_moment",
+              "pitch_moment"})) {
+    return ParameterKind::offset;
   }
-  const double heading = motion.heading_rad + 0.5 * dt * middle[2];
-  motion.x_m += dt * (middle[0] * std::cos(heading) - middle[1] * std::sin(heading));
-  motion.y_m += dt * (middle[0] * std::sin(heading) + middle[1] * std::cos(heading));
-  motion.heading_rad += dt * middle[2];
+  if (is_any({"lag", "delay", "dead_band", "volts_exponent"})) {
+    return ParameterKind::curve;
+  }
+  return own == "arm"                ? ParameterKind::arm
+         : own == "angle"            ? ParameterKind::angle
+         : own.ends_with("_inertia") ? ParameterKind::inertia
+                                     : ParameterKind::size;
 }
 
 bool is_told(const FittedParameter& parameter) {
@@ -47,7 +66,7 @@ bool is_told(const FittedParameter& parameter) {
 }
 
 // A matrix whose product with standard normal numbers has the errors of the fit.
-Eigen::MatrixXd root_of_errors(const PlanarFit& fit) {
+Eigen::MatrixXd root_of_errors(const ParameterFit& fit) {
   Eigen::MatrixXd covariance = as_matrix(fit.covariance);
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const FittedParameter& parameter = fit.parameters[i];
@@ -62,20 +81,16 @@ Eigen::MatrixXd root_of_errors(const PlanarFit& fit) {
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-bool is_size(std::size_t place) {
-  const bool is_force =
-      place >= PlanarPlace::constant_force && place < PlanarPlace::constant_force + kPlanarAxes;
-  const bool is_direction = place >= PlanarPlace::thrusters &&
-                            (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster >= 2;
-  return !is_force && !is_direction && place != PlanarPlace::sway_yaw_inertia;
+bool is_size(const FittedParameter& parameter) {
+  const ParameterKind kind = kind_of(parameter.name);
+  return kind == ParameterKind::inertia || kind == ParameterKind::size ||
+         kind == ParameterKind::curve;
 }
 
-bool is_usual(std::size_t place) {
-  const bool is_angle = place >= PlanarPlace::thrusters &&
-                        (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster == 2;
-  const bool is_force =
-      place >= PlanarPlace::constant_force && place < PlanarPlace::constant_force + kPlanarAxes;
-  return !is_angle && !is_force && place != PlanarPlace::sway_yaw_inertia;
+bool is_usual(const FittedParameter& parameter) {
+  const ParameterKind kind = kind_of(parameter.name);
+  return kind == ParameterKind::inertia || kind == ParameterKind::size ||
+         kind == ParameterKind::arm;
 }
 
 std::vector<std::string> words_of(const std::string& name) {
@@ -97,31 +112,26 @@ bool has_words(const std::string& name, const std::string& wanted) {
   });
 }
 
-PlanarVehicle drawn_vehicle(const PlanarFit& fit, const Eigen::MatrixXd& root,
-                            RandomStream& random) {
+ParameterFit drawn_fit(const ParameterFit& fit, const Eigen::MatrixXd& root, RandomStream& random) {
   Eigen::VectorXd normal(root.cols());
   for (double& value : normal) {
     value = random.normal();
   }
   const Eigen::VectorXd change = root * normal;
-  PlanarFit other = fit;
+  ParameterFit other = fit;
   for (std::size_t i = 0; i < other.parameters.size(); ++i) {
     double& value = other.parameters[i].value;
     const double moved = value + change(static_cast<Eigen::Index>(i));
-    value = is_size(i) ? std::max(moved, 0.3 * value) : moved;
+    value = is_size(other.parameters[i]) ? std::max(moved, 0.3 * value) : moved;
   }
-  return other.vehicle();
+  return other;
 }
 
 // Rows of the estimate under way, and the windows of the whole drive so far.
 class DriveRecord {
  public:
-  DriveRecord(PlanarVehicle vehicle, double row_s, const PlanarMotion& start)
-      : vehicle_(std::move(vehicle)), row_s_(row_s), motion_(start) {
-    for (const PlanarThruster& thruster : vehicle_.thrusters) {
-      rows_.thrusters.push_back(thruster.name);
-    }
-  }
+  DriveRecord(const DrivableVehicle& vehicle, const DriveMotion& start)
+      : vehicle_(vehicle), step_(vehicle.vehicle_of(vehicle.expected().now())), motion_(start) {}
 
   void add(const Manoeuvre& manoeuvre) {
     for (const HeldSpeeds& part : manoeuvre.parts) {
@@ -132,45 +142,48 @@ class DriveRecord {
     }
   }
 
-  WeakRows windows() const { return weak_rows(rows_, {}); }
-  const std::vector<double>& x_m() const { return x_m_; }
-  const std::vector<double>& y_m() const { return y_m_; }
+  WeakRows windows() const { return vehicle_.windows(rows_); }
+  const std::vector<DriveMotion>& track() const { return track_; }
 
  private:
   void add_step(const std::vector<double>& speeds) {
-    x_m_.push_back(motion_.x_m);
-    y_m_.push_back(motion_.y_m);
-    const auto parts = std::max(1, static_cast<int>(std::lround(kManoeuvreStepS / row_s_)));
+    track_.push_back(motion_);
+    const auto parts =
+        std::max(1, static_cast<int>(std::lround(kManoeuvreStepS / vehicle_.row_s())));
     const double dt = kManoeuvreStepS / parts;
     const int substeps = std::max(1, kSubsteps / parts);
     for (int row = 0; row < parts; ++row) {
       rows_.times_s.push_back(time_s_);
       rows_.velocities.insert(rows_.velocities.end(), motion_.velocity.begin(),
                               motion_.velocity.end());
-      rows_.speeds.insert(rows_.speeds.end(), speeds.begin(), speeds.end());
+      const Triple down = down_at(motion_.angles_rad);
+      rows_.down.insert(rows_.down.end(), down.begin(), down.end());
+      rows_.commands.insert(rows_.commands.end(), speeds.begin(), speeds.end());
       for (int i = 0; i < substeps; ++i) {
-        advance_by(vehicle_, speeds, dt / substeps, motion_);
+        step_(speeds, dt / substeps, motion_);
       }
       time_s_ += dt;
     }
   }
 
-  PlanarVehicle vehicle_;
-  double row_s_;
-  PlanarMotion motion_;
-  PlanarRows rows_;
-  std::vector<double> x_m_, y_m_;
+  const DrivableVehicle& vehicle_;
+  DriveStep step_;
+  DriveMotion motion_;
+  SixAxisRows rows_;
+  std::vector<DriveMotion> track_;
   double time_s_ = 0.0;
 };
 
 // A change by `share`: of a thruster's thrust, of all inertias ("load"), else of what has the
 // words.
-std::vector<double> change_of(const PlanarFit& fit, const std::string& cause, double share) {
+std::vector<double> change_of(const ParameterFit& fit, const std::string& cause, double share) {
   std::vector<double> change(fit.parameters.size(), 0.0);
   for (std::size_t i = 0; i < change.size(); ++i) {
-    const bool is_inertia = i < PlanarPlace::linear_drag;
-    const bool is_wanted =
-        cause == kLoad ? is_inertia : is_size(i) && has_words(fit.parameters[i].name, cause);
+    const FittedParameter& parameter = fit.parameters[i];
+    const ParameterKind kind = kind_of(parameter.name);
+    const bool is_wanted = cause == kLoad
+                               ? kind == ParameterKind::inertia || kind == ParameterKind::coupling
+                               : is_size(parameter) && has_words(parameter.name, cause);
     change[i] = is_wanted ? share * fit.parameters[i].value : 0.0;
   }
   if (std::ranges::all_of(change, [](double value) { return value == 0.0; })) {
@@ -181,6 +194,28 @@ std::vector<double> change_of(const PlanarFit& fit, const std::string& cause, do
   return change;
 }
 
+// What the errors of a parameter are compared with.
+double size_of(const ParameterFit& fit, const FittedParameter& parameter) {
+  const auto value = [&](const char* name) {
+    return std::ranges::find(fit.parameters, name, &FittedParameter::name)->value;
+  };
+  const std::string& name = parameter.name;
+  switch (kind_of(name)) {
+    case ParameterKind::angle:
+      return 1.0;
+    case ParameterKind::coupling:
+      return name == "low_centre"
+                 ? std::sqrt(std::abs(value("surge_inertia") * value("pitch_inertia")))
+                 : std::sqrt(std::abs(value("sway_inertia") * value("yaw_inertia")));
+    case ParameterKind::curve:
+      return name.ends_with(".lag") ? std::abs(parameter.value) : 1.0;
+    default:
+      break;
+  }
+  return std::abs(name == "roll_moment" || name == "pitch_moment" ? value("righting_moment")
+                                                                  : parameter.value);
+}
+
 // The best next manoeuvre, and what is known after it.
 struct DriveChoice {
   double gain = 0.0;
@@ -188,28 +223,94 @@ struct DriveChoice {
   DriveProgress progress{};
 };
 
+// The dictionary, searched for the largest gain again and again. On six axes, where a candidate
+// takes milliseconds, gains count as falling from choice to choice, so that a candidate is asked
+// again only if its last gain is above the best (Minoux 1978); in the plane every candidate is.
+class DriveSearch {
+ public:
+  explicit DriveSearch(const ThrusterPush& push)
+      : dictionary_(manoeuvres_for(push)),
+        asks_all_(push.axes() == kPlanarAxes),
+        last_(dictionary_.size(), std::numeric_limits<double>::infinity()),
+        blocked_(dictionary_.size(), false),
+        order_(dictionary_.size()) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+  }
+
+  DriveChoice best(const DriveRecord& record, const PossibleVehicles& possible,
+                   const DriveGoal& goal, const DriveProgress& now, double left_s) {
+    if (!asks_all_) {
+      std::ranges::stable_sort(order_, std::greater{},
+                               [this](std::size_t place) { return last_[place]; });
+    }
+    DriveChoice best;
+    for (const std::size_t place : order_) {
+      const Manoeuvre& manoeuvre = dictionary_[place];
+      if (!asks_all_ && last_[place] <= best.gain) {
+        break;
+      }
+      if (manoeuvre.duration_s() > left_s + 1e-9 ||
+          (blocked_[place] && !possible.allows(manoeuvre))) {
+        continue;
+      }
+      DriveRecord longer = record;
+      longer.add(manoeuvre);
+      DriveProgress progress = goal.progress(longer.windows());
+      const double gain = (now.missing - progress.missing) / manoeuvre.duration_s();
+      last_[place] = std::isfinite(gain) ? gain : 0.0;
+      if (last_[place] > best.gain) {
+        blocked_[place] = !blocked_[place] && !possible.allows(manoeuvre);
+        if (!blocked_[place]) {
+          best = {last_[place], &manoeuvre, std::move(progress)};
+        }
+      }
+    }
+    return best;
+  }
+
+ private:
+  std::vector<Manoeuvre> dictionary_;
+  bool asks_all_;
+  std::vector<double> last_;   // gains, per second
+  std::vector<bool> blocked_;  // by bounds, when last asked
+  std::vector<std::size_t> order_;
+};
+
 }  // namespace
 
-PossibleVehicles::PossibleVehicles(const PlanarFit& fit, const DriveBounds& bounds,
-                                   const PlanarMotion& start)
-    : bounds_(bounds), vehicles_{fit.vehicle()}, motions_(1 + kDraws, start) {
+void DriveExtent::include(const DriveMotion& motion) {
+  farthest_m = std::max(farthest_m, std::hypot(motion.position_m[0], motion.position_m[1]));
+  fastest_m_s = std::max(fastest_m_s, std::hypot(std::hypot(motion.velocity[0], motion.velocity[1]),
+                                                 motion.velocity[2]));
+  depth_m = std::max(depth_m, std::abs(motion.position_m[2]));
+  tilt_rad = std::max({tilt_rad, std::abs(motion.angles_rad[0]), std::abs(motion.angles_rad[1])});
+}
+
+bool DriveExtent::within(const DriveBounds& bounds) const {
+  return farthest_m <= bounds.radius_m && fastest_m_s <= bounds.speed_m_s &&
+         depth_m <= bounds.depth_m && tilt_rad <= bounds.tilt_rad;
+}
+
+PossibleVehicles::PossibleVehicles(const DrivableVehicle& vehicle, const DriveBounds& bounds,
+                                   const DriveMotion& start)
+    : bounds_(bounds), motions_(1 + kDraws, start) {
+  const ParameterFit& fit = vehicle.expected().now();
+  vehicles_.push_back(vehicle.vehicle_of(fit));
   const Eigen::MatrixXd root = root_of_errors(fit);
   RandomStream random(1, "possible vehicles");
   while (vehicles_.size() < motions_.size()) {
-    vehicles_.push_back(drawn_vehicle(fit, root, random));
+    vehicles_.push_back(vehicle.vehicle_of(drawn_fit(fit, root, random)));
   }
 }
 
-bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<PlanarMotion>& motions,
-                               double& farthest_m, double& fastest_m_s) const {
-  const auto keeps = [&](std::size_t i, PlanarMotion& motion, const HeldSpeeds& part) {
+bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<DriveMotion>& motions,
+                               DriveExtent& extent) const {
+  const auto keeps = [&](std::size_t i, DriveMotion& motion, const HeldSpeeds& part) {
     const auto steps = static_cast<int>(std::lround(kSubsteps * part.duration_s / kManoeuvreStepS));
     for (int step = 0; step < steps; ++step) {
-      advance_by(vehicles_[i], part.speeds, kManoeuvreStepS / kSubsteps, motion);
-      farthest_m = std::max(farthest_m, std::hypot(motion.x_m, motion.y_m));
-      fastest_m_s = std::max(fastest_m_s, std::hypot(motion.velocity[0], motion.velocity[1]));
-      if (!(farthest_m <= bounds_.radius_m && fastest_m_s <= bounds_.speed_m_s &&
-            std::abs(motion.velocity[2]) < kFullTurn * kMostTurnsPerS)) {
+      vehicles_[i](part.speeds, kManoeuvreStepS / kSubsteps, motion);
+      extent.include(motion);
+      if (!(extent.within(bounds_) && std::abs(motion.velocity[5]) < kFullTurn * kMostTurnsPerS)) {
         return false;
       }
     }
@@ -221,7 +322,7 @@ bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<PlanarMot
         return false;
       }
     }
-    PlanarMotion coasting = motions[i];
+    DriveMotion coasting = motions[i];
     const std::vector<double> off(manoeuvre.parts.front().speeds.size(), 0.0);
     if (!keeps(i, coasting, {kCoastS, off})) {
       return false;
@@ -231,22 +332,19 @@ bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<PlanarMot
 }
 
 bool PossibleVehicles::allows(const Manoeuvre& manoeuvre) const {
-  std::vector<PlanarMotion> motions = motions_;
-  double farthest_m = 0.0;
-  double fastest_m_s = 0.0;
-  return advance(manoeuvre, motions, farthest_m, fastest_m_s);
+  std::vector<DriveMotion> motions = motions_;
+  DriveExtent extent;
+  return advance(manoeuvre, motions, extent);
 }
 
 bool PossibleVehicles::drive(const Manoeuvre& manoeuvre) {
-  std::vector<PlanarMotion> motions = motions_;
-  double farthest_m = farthest_m_;
-  double fastest_m_s = fastest_m_s_;
-  if (!advance(manoeuvre, motions, farthest_m, fastest_m_s)) {
+  std::vector<DriveMotion> motions = motions_;
+  DriveExtent extent = extent_;
+  if (!advance(manoeuvre, motions, extent)) {
     return false;
   }
   motions_ = std::move(motions);
-  farthest_m_ = farthest_m;
-  fastest_m_s_ = fastest_m_s;
+  extent_ = extent;
   return true;
 }
 
@@ -258,11 +356,12 @@ double DrivePlan::duration_s() const {
   return sum;
 }
 
-std::vector<std::size_t> wanted_places(const PlanarFit& fit,
+std::vector<std::size_t> wanted_places(const ParameterFit& fit,
                                        const std::vector<std::string>& names) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    if (fit.parameters[i].state != ParameterState::known && (names.empty() ? is_usual(i) : true) &&
+    if (fit.parameters[i].state != ParameterState::known &&
+        (!names.empty() || is_usual(fit.parameters[i])) &&
         (names.empty() || std::ranges::any_of(names, [&](const std::string& name) {
            return has_words(fit.parameters[i].name, name);
          }))) {
@@ -274,7 +373,7 @@ std::vector<std::size_t> wanted_places(const PlanarFit& fit,
     for (const FittedParameter& parameter : fit.parameters) {
       known.push_back(parameter.name);
     }
-    if (std::ranges::none_of(known, [&](const std::string& one) { return has_words(one, name); })) {
+    if (std::ranges::none_of(known, [&](const std::string& of) { return has_words(of, name); })) {
       throw InputError("--tell", "'" + name + "' is no parameter" + did_you_mean(name, known) +
                                      "; there are " + join_text(known, ", "));
     }
@@ -282,24 +381,18 @@ std::vector<std::size_t> wanted_places(const PlanarFit& fit,
   return places;
 }
 
-double interval_share(const PlanarFit& fit, std::size_t place) {
+double interval_share(const ParameterFit& fit, std::size_t place) {
   const FittedParameter& parameter = fit.parameters[place];
-  const bool is_angle = place >= PlanarPlace::thrusters &&
-                        (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster == 2;
-  const double size = is_angle ? 1.0
-                      : place == PlanarPlace::sway_yaw_inertia
-                          ? std::sqrt(std::abs(fit.parameters[PlanarPlace::sway_inertia].value *
-                                               fit.parameters[PlanarPlace::yaw_inertia].value))
-                          : std::abs(parameter.value);
-  return kNormal90 * parameter.error / std::max(size, 1e-12);
+  return kNormal90 * parameter.error / std::max(size_of(fit, parameter), 1e-12);
 }
 
-DriveGoal telling_goal(const ExpectedPlanarFit& expected, std::vector<std::size_t> parameters,
+DriveGoal telling_goal(const ExpectedFit& expected, std::vector<std::size_t> parameters,
                        double share, FitScale scale) {
-  PlanarFit scaled = expected.now();
+  ParameterFit scaled = expected.now();
   scale(scaled);
   std::erase_if(parameters, [&](std::size_t place) {
-    return scaled.parameters[place].state == ParameterState::known;
+    const ParameterState state = scaled.parameters[place].state;
+    return state == ParameterState::known || state == ParameterState::at_bound;
   });
   require(!parameters.empty(), "--tell", "names no parameter that a drive can tell");
   DriveGoal goal;
@@ -308,7 +401,7 @@ DriveGoal telling_goal(const ExpectedPlanarFit& expected, std::vector<std::size_
   }
   goal.progress = [&expected, parameters = std::move(parameters), share,
                    scale = std::move(scale)](const WeakRows& windows) {
-    PlanarFit fit = expected.after(windows);
+    ParameterFit fit = expected.after(windows);
     scale(fit);
     DriveProgress progress{.reached = true};
     for (const std::size_t place : parameters) {
@@ -322,7 +415,7 @@ DriveGoal telling_goal(const ExpectedPlanarFit& expected, std::vector<std::size_
   return goal;
 }
 
-DriveGoal parting_goal(const ExpectedPlanarFit& expected, const std::string& first,
+DriveGoal parting_goal(const ExpectedFit& expected, const std::string& first,
                        const std::string& second, double share) {
   std::vector<double> one = change_of(expected.now(), first, share);
   std::vector<double> other = change_of(expected.now(), second, share);
@@ -338,29 +431,17 @@ DriveGoal parting_goal(const ExpectedPlanarFit& expected, const std::string& fir
   return goal;
 }
 
-DrivePlan plan_drive(const PlanarFit& fit, const PlanarPush& push, const DriveBounds& bounds,
-                     const DriveGoal& goal, double row_s, const PlanarMotion& start) {
-  const std::vector<Manoeuvre> dictionary = manoeuvres_for(push);
-  PossibleVehicles possible(fit, bounds, start);
-  DriveRecord record(fit.vehicle(), row_s, start);
+DrivePlan plan_drive(const DrivableVehicle& vehicle, const DriveBounds& bounds,
+                     const DriveGoal& goal, const DriveMotion& start) {
+  DriveSearch search(vehicle.push());
+  PossibleVehicles possible(vehicle, bounds, start);
+  DriveRecord record(vehicle, start);
   DrivePlan plan{.names = goal.names};
   DriveProgress now = goal.progress(WeakRows{});
   plan.countdown.push_back({0.0, "", now.numbers});
   double t_s = 0.0;
   while (!now.reached) {
-    DriveChoice best;
-    for (const Manoeuvre& manoeuvre : dictionary) {
-      if (t_s + manoeuvre.duration_s() > bounds.time_s + 1e-9 || !possible.allows(manoeuvre)) {
-        continue;
-      }
-      DriveRecord longer = record;
-      longer.add(manoeuvre);
-      DriveProgress progress = goal.progress(longer.windows());
-      const double gain = (now.missing - progress.missing) / manoeuvre.duration_s();
-      if (gain > best.gain) {
-        best = {gain, &manoeuvre, std::move(progress)};
-      }
-    }
+    DriveChoice best = search.best(record, possible, goal, now, bounds.time_s - t_s);
     if (best.manoeuvre == nullptr) {
       break;
     }
@@ -374,10 +455,8 @@ DrivePlan plan_drive(const PlanarFit& fit, const PlanarPush& push, const DriveBo
   plan.reached = now.reached;
   require(plan.reached || !plan.manoeuvres.empty(), "bounds",
           "leave room for no manoeuvre: give more time, speed or space");
-  plan.x_m = record.x_m();
-  plan.y_m = record.y_m();
-  plan.farthest_m = possible.farthest_m();
-  plan.fastest_m_s = possible.fastest_m_s();
+  plan.track = record.track();
+  plan.extent = possible.extent();
   return plan;
 }
 

@@ -4,74 +4,105 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "core/eigen.hpp"
 #include "kelpie/core/random.hpp"
+#include "model/six_axis_structure.hpp"
 
 namespace kelpie::study {
 namespace {
 
-constexpr std::array<const char*, kPlanarAxes> kPushNames{"surge", "sway", "yaw"};
-constexpr std::array kAmplitudes{0.4, 0.7, 1.0};
-constexpr std::array kPeriodsS{5.0, 10.0, 20.0};
-constexpr std::array kHoldsS{1.5, 3.0, 6.0};  // shortest hold of a pseudo-random sequence
-constexpr double kSequenceS = 18.0;
-constexpr std::uint64_t kSequences = 3;
-constexpr double kLeastShare = 1e-3;  // of the strongest axis: weaker axes are not driven
+constexpr double kLeastShare = 1e-3;   // of the strongest axis: weaker axes are not driven
+constexpr double kLeastReached = 0.5;  // of a push along an axis
+
+// Amplitudes and times of the dictionary.
+struct Levels {
+  std::vector<double> amplitudes;
+  std::vector<double> periods_s;
+};
+
+struct Dictionary {
+  std::vector<const char*> axes;
+  Levels level{{0.4, 0.7, 1.0}, {5.0, 10.0, 20.0}};
+  Levels soft{};  // of heave, roll and pitch
+  std::vector<double> sequences{0.7, 1.0};
+  std::vector<double> holds_s{1.5, 3.0, 6.0};  // shortest hold of a pseudo-random sequence
+  double sequence_s = 18.0;
+  std::uint64_t seeds = 3;        // of sequences of all thrusters
+  std::uint64_t alone_seeds = 3;  // of sequences of one thruster
+  bool thrusters = true;          // steps and doublets of each
+};
+
+Dictionary dictionary_for(std::size_t axes) {
+  if (axes == kPlanarAxes) {
+    return {.axes = {"surge", "sway", "yaw"}};
+  }
+  return {.axes = {"surge", "sway", "heave", "roll", "pitch", "yaw"},
+          .soft = {{0.1, 0.2, 0.4, 0.7}, {1.0, 2.0, 5.0, 10.0}},
+          .sequences = {0.15, 0.3, 0.6},
+          .holds_s = {0.5, 1.5, 3.0},
+          .sequence_s = 9.0,
+          .alone_seeds = 1,
+          .thrusters = false};
+}
 
 int percent(double share) {
   return static_cast<int>(std::lround(100.0 * share));
 }
 
-double full(const ThrusterRange& range, std::size_t thruster, double sign) {
-  return sign < 0.0 ? range.least[thruster] : range.most[thruster];
-}
-
-std::vector<double> negated(const PlanarPush& push, const PlanarVector& direction,
-                            double amplitude) {
-  return push.speeds({-direction[0], -direction[1], -direction[2]}, amplitude);
-}
-
-void add_axes(const PlanarPush& push, std::vector<Manoeuvre>& list) {
-  for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
-    if (!push.reaches(axis)) {
-      continue;
-    }
-    for (const double amplitude : kAmplitudes) {
-      for (const double sense : {1.0, -1.0}) {
-        PlanarVector direction{};
-        direction[axis] = sense;
-        const std::vector<double> there = push.speeds(direction, amplitude);
-        const std::vector<double> back = negated(push, direction, amplitude);
-        const std::vector<double> rest(there.size(), 0.0);
-        const int share = percent(sense * amplitude);
-        for (const double period_s : kPeriodsS) {
-          const double half_s = 0.5 * period_s;
-          list.push_back({fmt::format("{} step, {:g} s, {} %", kPushNames[axis], half_s, share),
-                          {{half_s, there}, {half_s, rest}}});
-          list.push_back(
-              {fmt::format("{} doublet, {:g} s, {} %", kPushNames[axis], period_s, share),
-               {{half_s, there}, {half_s, back}}});
-        }
+void add_axis(const ThrusterPush& push, std::size_t axis, const char* name, const Levels& levels,
+              std::vector<Manoeuvre>& list) {
+  for (const double amplitude : levels.amplitudes) {
+    for (const double sense : {1.0, -1.0}) {
+      std::vector<double> direction(push.axes(), 0.0);
+      direction[axis] = sense;
+      const std::vector<double> there = push.speeds(direction, amplitude);
+      direction[axis] = -sense;
+      const std::vector<double> back = push.speeds(direction, amplitude);
+      const std::vector<double> rest(there.size(), 0.0);
+      const int share = percent(sense * amplitude);
+      for (const double period_s : levels.periods_s) {
+        const double half_s = 0.5 * period_s;
+        list.push_back({fmt::format("{} step, {:g} s, {} %", name, half_s, share),
+                        {{half_s, there}, {half_s, rest}}});
+        list.push_back({fmt::format("{} doublet, {:g} s, {} %", name, period_s, share),
+                        {{half_s, there}, {half_s, back}}});
       }
     }
   }
 }
 
-void add_turns(const PlanarPush& push, std::vector<Manoeuvre>& list) {
-  if (!push.reaches(0) || !push.reaches(2)) {
+void add_axes(const ThrusterPush& push, const Dictionary& dictionary,
+              std::vector<Manoeuvre>& list) {
+  for (std::size_t axis = 0; axis < dictionary.axes.size(); ++axis) {
+    if (push.reaches(axis)) {
+      const bool is_soft = push.axes() == kSixAxes && axis >= 2 && axis <= 4;
+      add_axis(push, axis, dictionary.axes[axis], is_soft ? dictionary.soft : dictionary.level,
+               list);
+    }
+  }
+}
+
+void add_turns(const ThrusterPush& push, const Dictionary& dictionary,
+               std::vector<Manoeuvre>& list) {
+  if (!push.reaches(0) || !push.reaches(push.axes() - 1)) {
     return;
   }
-  for (const double amplitude : kAmplitudes) {
+  for (const double amplitude : dictionary.level.amplitudes) {
     for (const double turn : {0.3, 0.8}) {
       for (const double ahead : {1.0, -1.0}) {
-        const std::vector<double> left = push.speeds({ahead, 0.0, turn}, amplitude);
-        const std::vector<double> right = push.speeds({ahead, 0.0, -turn}, amplitude);
+        std::vector<double> direction(push.axes(), 0.0);
+        direction.front() = ahead;
+        direction.back() = turn;
+        const std::vector<double> left = push.speeds(direction, amplitude);
+        direction.back() = -turn;
+        const std::vector<double> right = push.speeds(direction, amplitude);
         const int share = percent(ahead * amplitude);
         list.push_back({fmt::format("circle, turn {:g}, {} %", turn, share), {{12.0, left}}});
         list.push_back({fmt::format("circle, turn {:g}, {} %", -turn, share), {{12.0, right}}});
@@ -82,16 +113,17 @@ void add_turns(const PlanarPush& push, std::vector<Manoeuvre>& list) {
   }
 }
 
-void add_thrusters(const ThrusterRange& range, std::vector<Manoeuvre>& list) {
+void add_thrusters(const ThrusterRange& range, const Dictionary& dictionary,
+                   std::vector<Manoeuvre>& list) {
   const std::size_t thrusters = range.most.size();
-  for (std::size_t i = 0; i < thrusters; ++i) {
-    for (const double amplitude : kAmplitudes) {
+  for (std::size_t i = 0; dictionary.thrusters && i < thrusters; ++i) {
+    for (const double amplitude : dictionary.level.amplitudes) {
       for (const double sense : {1.0, -1.0}) {
         std::vector<double> there(thrusters, 0.0);
         std::vector<double> back(thrusters, 0.0);
-        there[i] = amplitude * full(range, i, sense);
-        back[i] = amplitude * full(range, i, -sense);
-        for (const double period_s : kPeriodsS) {
+        there[i] = amplitude * range.full(i, sense);
+        back[i] = amplitude * range.full(i, -sense);
+        for (const double period_s : dictionary.level.periods_s) {
           list.push_back({fmt::format("doublet of thruster {}, {:g} s, {} %", i + 1, period_s,
                                       percent(sense * amplitude)),
                           {{0.5 * period_s, there}, {0.5 * period_s, back}}});
@@ -102,23 +134,27 @@ void add_thrusters(const ThrusterRange& range, std::vector<Manoeuvre>& list) {
 }
 
 // Every thruster by itself, and all at once by sequences of their own.
-void add_sequences(const ThrusterRange& range, std::vector<Manoeuvre>& list) {
+void add_sequences(const ThrusterRange& range, const Dictionary& dictionary,
+                   std::vector<Manoeuvre>& list) {
   const std::size_t thrusters = range.most.size();
-  for (const double amplitude : {0.7, 1.0}) {
-    for (const double hold_s : kHoldsS) {
-      for (std::uint64_t seed = 1; seed <= kSequences; ++seed) {
+  for (const double amplitude : dictionary.sequences) {
+    for (const double hold_s : dictionary.holds_s) {
+      for (std::uint64_t seed = 1; seed <= dictionary.seeds; ++seed) {
         for (std::size_t only = 0; only <= thrusters; ++only) {
           const bool all = only == thrusters;
+          if (!all && seed > dictionary.alone_seeds) {
+            continue;
+          }
           Manoeuvre sequence{all ? fmt::format("sequence {} of all thrusters, {:g} s, {} %", seed,
                                                hold_s, percent(amplitude))
                                  : fmt::format("sequence {} of thruster {}, {:g} s, {} %", seed,
                                                only + 1, hold_s, percent(amplitude))};
           RandomStream random(seed, "sequence");
-          for (double t = 0.0; t < kSequenceS; t += hold_s) {
+          for (double t = 0.0; t < dictionary.sequence_s; t += hold_s) {
             std::vector<double> speeds(thrusters, 0.0);
             for (std::size_t i = 0; i < thrusters; ++i) {
               const double sign = random.uniform(-1.0, 1.0);
-              speeds[i] = all || only == i ? amplitude * full(range, i, sign) : 0.0;
+              speeds[i] = all || only == i ? amplitude * range.full(i, sign) : 0.0;
             }
             sequence.parts.push_back({hold_s, std::move(speeds)});
           }
@@ -140,7 +176,7 @@ double Manoeuvre::duration_s() const {
 }
 
 PlanarPush::PlanarPush(const PlanarVehicle& vehicle, ThrusterRange range)
-    : range_(std::move(range)) {
+    : ThrusterPush(std::move(range)) {
   const auto count = static_cast<Eigen::Index>(vehicle.thrusters.size());
   Eigen::MatrixXd forces(static_cast<Eigen::Index>(kPlanarAxes), count);
   for (std::size_t i = 0; i < vehicle.thrusters.size(); ++i) {
@@ -163,7 +199,7 @@ bool PlanarPush::reaches(std::size_t axis) const {
   return forces.row(static_cast<Eigen::Index>(axis)).norm() > kLeastShare * forces.norm();
 }
 
-std::vector<double> PlanarPush::speeds(const PlanarVector& direction, double amplitude) const {
+std::vector<double> PlanarPush::speeds(std::span<const double> direction, double amplitude) const {
   const std::size_t thrusters = range_.most.size();
   const Eigen::VectorXd share =
       columns_of(std::span<const double>(inverse_), thrusters) * as_vector(direction);
@@ -171,17 +207,91 @@ std::vector<double> PlanarPush::speeds(const PlanarVector& direction, double amp
   std::vector<double> speeds(thrusters, 0.0);
   for (std::size_t i = 0; largest > 0.0 && i < thrusters; ++i) {
     const double part = share(static_cast<Eigen::Index>(i)) / largest;
-    speeds[i] = amplitude * std::sqrt(std::abs(part)) * full(range_, i, part);
+    speeds[i] = amplitude * std::sqrt(std::abs(part)) * range_.full(i, part);
   }
   return speeds;
 }
 
-std::vector<Manoeuvre> manoeuvres_for(const PlanarPush& push) {
+SixAxisPush::SixAxisPush(const SixAxisFit& fit, ThrusterRange range, double supply)
+    : ThrusterPush(std::move(range)), dead_band_(fit.curve.dead_band) {
+  const std::size_t count = fit.thrusters.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t place = SixAxisPlace::thruster(i);
+    ahead_.push_back(supply * fit.parameters[place].value);
+    astern_.push_back(supply * fit.parameters[place + 1].value);
+  }
+  Eigen::MatrixXd arms = thruster_arms(fit.thrusters);
+  const double arm = arms.bottomRows(3).norm() / std::max(arms.topRows(3).norm(), 1e-12);
+  arms.bottomRows(3) /= std::max(arm, 1e-12);
+  const Eigen::MatrixXd inverse = arms.completeOrthogonalDecomposition().pseudoInverse();
+  inverse_.assign(inverse.data(), inverse.data() + inverse.size());
+  const Eigen::VectorXd reached = (arms * inverse).diagonal();
+  reached_.assign(reached.begin(), reached.end());
+  const auto value = [&](std::size_t place) { return fit.parameters[place].value; };
+  // The vehicle is level: gravity acts along heave, the moments are those of the centres.
+  Eigen::VectorXd holding = Eigen::VectorXd::Zero(6);
+  holding(2) = -value(SixAxisPlace::net_weight);
+  holding(3) = -value(SixAxisPlace::moment + 1) / std::max(arm, 1e-12);
+  holding(4) = value(SixAxisPlace::moment) / std::max(arm, 1e-12);
+  const Eigen::VectorXd thrusts = inverse * holding;
+  holding_.assign(thrusts.begin(), thrusts.end());
+}
+
+double SixAxisPush::thrust_of(std::size_t thruster, double command) const {
+  const double speed = std::max(0.0, std::abs(command) - dead_band_) / (1.0 - dead_band_);
+  return command < 0.0 ? -astern_[thruster] * speed * speed : ahead_[thruster] * speed * speed;
+}
+
+double SixAxisPush::command_of(std::size_t thruster, double thrust) const {
+  const double most = thrust < 0.0 ? astern_[thruster] : ahead_[thruster];
+  const double speed = most > 0.0 ? std::sqrt(std::abs(thrust) / most) : 0.0;
+  const double command = speed > 0.0 ? dead_band_ + (1.0 - dead_band_) * speed : 0.0;
+  return std::clamp(thrust < 0.0 ? -command : command, range_.least[thruster],
+                    range_.most[thruster]);
+}
+
+bool SixAxisPush::reaches(std::size_t axis) const {
+  return reached_[axis] > kLeastReached;
+}
+
+std::vector<double> SixAxisPush::speeds(std::span<const double> direction, double amplitude) const {
+  const std::size_t thrusters = range_.most.size();
+  const Eigen::VectorXd share =
+      columns_of(std::span<const double>(inverse_), thrusters) * as_vector(direction);
+  double factor = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < thrusters; ++i) {
+    const double part = share(static_cast<Eigen::Index>(i));
+    if (part != 0.0) {
+      factor = std::min(factor, thrust_of(i, range_.full(i, part)) / part);
+    }
+  }
+  std::vector<double> commands(thrusters, 0.0);
+  for (std::size_t i = 0; std::isfinite(factor) && i < thrusters; ++i) {
+    commands[i] =
+        command_of(i, amplitude * amplitude * factor * share(static_cast<Eigen::Index>(i)));
+  }
+  return commands;
+}
+
+std::vector<double> SixAxisPush::held(std::vector<double> speeds) const {
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    speeds[i] = command_of(i, thrust_of(i, speeds[i]) + holding_[i]);
+  }
+  return speeds;
+}
+
+std::vector<Manoeuvre> manoeuvres_for(const ThrusterPush& push) {
+  const Dictionary dictionary = dictionary_for(push.axes());
   std::vector<Manoeuvre> list;
-  add_axes(push, list);
-  add_turns(push, list);
-  add_thrusters(push.range(), list);
-  add_sequences(push.range(), list);
+  add_axes(push, dictionary, list);
+  add_turns(push, dictionary, list);
+  add_thrusters(push.range(), dictionary, list);
+  add_sequences(push.range(), dictionary, list);
+  for (Manoeuvre& manoeuvre : list) {
+    for (HeldSpeeds& part : manoeuvre.parts) {
+      part.speeds = push.held(std::move(part.speeds));
+    }
+  }
   return list;
 }
 

@@ -20,6 +20,8 @@
 namespace kelpie::study {
 namespace {
 
+constexpr double kPulsePerShareUs = 400.0;  // ArduSub: 1100 to 1900 µs
+
 std::vector<PlacedThruster> placed_thrusters(const vehicle::VehicleParameters& vehicle) {
   std::vector<PlacedThruster> thrusters;
   for (const vehicle::Thruster& thruster : vehicle.thrusters) {
@@ -105,7 +107,6 @@ std::array<double, 3> down_of(const Attitude& attitude, std::span<const double> 
 
 double command_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
                      double command, double neutral) {
-  constexpr double kPulsePerShareUs = 400.0;  // ArduSub: 1100 to 1900 µs
   switch (vehicle.command_unit) {
     case vehicle::CommandUnit::pwm:
       return (command - neutral) / kPulsePerShareUs;
@@ -115,6 +116,19 @@ double command_share(const vehicle::VehicleParameters& vehicle, std::size_t thru
       break;
   }
   return command / vehicle.thrusters[thruster].max_speed_rps;
+}
+
+double command_for_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
+                         double share, double neutral) {
+  switch (vehicle.command_unit) {
+    case vehicle::CommandUnit::pwm:
+      return neutral + kPulsePerShareUs * share;
+    case vehicle::CommandUnit::share:
+      return share;
+    case vehicle::CommandUnit::speed:
+      break;
+  }
+  return share * vehicle.thrusters[thruster].max_speed_rps;
 }
 
 std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const std::string& states,
@@ -169,6 +183,7 @@ SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_
       six.volts.push_back(inputs[*columns.volts]);
     }
   }
+  require_volts(data, columns, vehicle.battery.nominal_v, six.volts);
   return six;
 }
 
@@ -225,7 +240,6 @@ Identification identify_six_axes(const log::Dataset& data, const Split& split,
   const std::vector<std::size_t> training = training_rows(data, split, only);
   Identification found = identification_of(data, split, training.size());
   const SixAxisRows rows = six_axis_rows(data, training, columns, vehicle, frame, neutral);
-  require_volts(data, columns, vehicle.battery.nominal_v, rows.volts);
   found.six = of_log(data, [&] { return fit_six_axes(rows, options); });
   for (const std::size_t target : columns.targets) {
     found.targets.push_back(data.target_names[target]);

@@ -43,7 +43,8 @@ std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const s
                                                const std::string& volts, std::string& why);
 
 /// Ascending rows for fit_six_axes(), turned to FRD. Commands by the vehicle's unit: 0 at rest, ±1
-/// in full. `neutral`: pulse at rest in the log, 1500, or 0 where it has been subtracted.
+/// in full. `neutral`: pulse at rest in the log, 1500, or 0 where it has been subtracted. Throws
+/// InputError (--volts) on a supply far from the vehicle's, as in mV.
 SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
                           const SixAxisColumns& columns, const vehicle::VehicleParameters& vehicle,
                           Frame frame, double neutral);
@@ -61,6 +62,10 @@ std::array<double, 3> down_of(const Attitude& attitude, std::span<const double> 
 /// as in six_axis_rows().
 double command_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
                      double command, double neutral);
+
+/// The command for a share of full: inverse of command_share().
+double command_for_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
+                         double share, double neutral);
 
 /// The parameters of a vehicle file in the order of SixAxisPlace: what should be identified.
 std::vector<double> six_axis_truth(const vehicle::VehicleParameters& vehicle);

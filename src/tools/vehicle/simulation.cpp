@@ -153,14 +153,6 @@ class PlanarRecorder {
   std::vector<LogRow> rows_;
 };
 
-// Roll, pitch, heading (Fossen 2011, eq. 2.29 to 2.31 of the rotation matrix).
-Eigen::Vector3d euler_angles(const Eigen::Quaterniond& attitude) {
-  const Eigen::Matrix3d to_world = attitude.toRotationMatrix();
-  return {std::atan2(to_world(2, 1), to_world(2, 2)),
-          std::asin(std::clamp(-to_world(2, 0), -1.0, 1.0)),
-          std::atan2(to_world(1, 0), to_world(0, 0))};
-}
-
 class SixAxisRecorder {
  public:
   SixAxisRecorder(const Scenario& scenario, const Simulator& simulator)

@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 
 const std::string kDagon = KELPIE_SOURCE_DIR "/vehicles/dagon.toml";
+const std::string kHeavy = KELPIE_SOURCE_DIR "/vehicles/bluerov2_heavy.toml";
 
 class Plan : public testing::CommandTest {
  protected:
@@ -91,6 +92,47 @@ TEST_F(Plan, TwoCausesAreToldApart) {
   EXPECT_LE(larger["duration_s"], plan["duration_s"]);
 }
 
+// Pulses around 1500 us, within the bounds of depth and tilt, and a script for ArduSub.
+TEST_F(Plan, SixAxesWithAVehicleFile) {
+  write("heavy.toml", "vehicle = \"" + kHeavy +
+                          "\"\nrate_hz = 20.0\nlog = \"six_axes\"\nnoise = \"as_recorded\"\n"
+                          "[excitation]\nmode = \"pilot\"\nperiod_s = [1.0, 6.0]\n"
+                          "effort = [50, 50, 40, 6, 6, 4]\ndither = 0.1\n[[configurations]]\n"
+                          "name = \"nominal\"\n[[phases]]\nconfiguration = \"nominal\"\n"
+                          "duration_s = 60.0\n");
+  testing::succeeded(run("simulate heavy.toml --out heavy.csv"));
+  const testing::Outcome outcome = testing::succeeded(
+      run("plan heavy.csv --vehicle " + kHeavy +
+          " --volts voltage --tell heave_drag,pitch_inertia --percent 0.5 --seconds 10 --depth 1 "
+          "--tilt 20 --out out"));
+  EXPECT_NE(outcome.out.find("of roll or pitch (bound 20)"), std::string::npos) << outcome.out;
+  const json plan = json::parse(content("out/plan.json"));
+  EXPECT_EQ(plan["names"], (json{"pitch_inertia", "heave_linear_drag", "heave_quadratic_drag"}));
+  EXPECT_LE(plan["depth_m"], 1.0);
+  EXPECT_LE(plan["tilt_rad"], 20.0 * 3.1416 / 180.0);
+  ASSERT_GT(plan["countdown"].size(), 1U);
+  std::istringstream lines(content("out/plan.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "t,m1,m2,m3,m4,m5,m6,m7,m8");
+  std::string last;
+  while (std::getline(lines, line)) {
+    last = line;
+    std::istringstream cells(line.substr(line.find(',') + 1));
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      EXPECT_GE(std::stod(cell), 1100.0);
+      EXPECT_LE(std::stod(cell), 1900.0);
+    }
+  }
+  EXPECT_NE(last.find(",1500,1500,1500,1500,1500,1500,1500,1500"), std::string::npos) << last;
+  EXPECT_TRUE(exists("out/plan.lua"));
+  EXPECT_NE(content("out/plan.html").find("Depth and attitude"), std::string::npos);
+  testing::expect_refused(run("plan log.csv --vehicle " + kHeavy + " --out refused"),
+                          "is of six axes, and the log has no ");
+  testing::expect_refused(run("plan heavy.csv --vehicle " + kHeavy + " --tell wings --out refused"),
+                          "'wings' is no parameter");
+}
+
 TEST_F(Plan, MistakesAreRefused) {
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     testing::expect_refused(run("plan log.csv " + arguments + " --out refused"), message);
@@ -106,8 +148,11 @@ TEST_F(Plan, MistakesAreRefused) {
   refused("--range th1=a:b", "has to be NAME=LEAST:MOST");
   refused("--thrust th1=0", "has to be a number > 0");
   refused("--radius 0.1 --seconds 5", "leave room for no manoeuvre");
+  refused("--depth 2", "bounds a drive on six axes, which takes --vehicle");
+  refused("--tilt 20", "bounds a drive on six axes, which takes --vehicle");
   for (const char* const value : {"0", "nan", "-1", "1e9", "x"}) {
-    for (const char* const option : {"--seconds", "--speed", "--radius", "--percent", "--change"}) {
+    for (const char* const option :
+         {"--seconds", "--speed", "--radius", "--percent", "--change", "--depth", "--tilt"}) {
       refused(std::string(option) + " " + value, option);
     }
   }

@@ -11,6 +11,13 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "motion/weak_form.hpp"
+#include "study/six_axes.hpp"
+#include "vehicle/frames.hpp"
+#include "vehicle/pilot.hpp"
+#include "vehicle/scenario_file.hpp"
+#include "vehicle/sensors.hpp"
+#include "vehicle/simulation.hpp"
+#include "vehicle/simulator.hpp"
 
 namespace kelpie::study::drive_plan_test {
 namespace {
@@ -81,9 +88,8 @@ const ThrusterRange kRange{{-12.0, -12.0, -12.0}, {12.0, 12.0, 12.0}};
 
 DrivePlan plan_for(const ExpectedPlanarFit& expected, const DriveBounds& bounds) {
   const DriveGoal goal =
-      telling_goal(expected, wanted_places(expected.now(), {}), 0.05, [](PlanarFit&) {});
-  return plan_drive(expected.now(), PlanarPush(expected.now().vehicle(), kRange), bounds, goal,
-                    kRowS);
+      telling_goal(expected, wanted_places(expected.now(), {}), 0.05, [](ParameterFit&) {});
+  return plan_drive(DrivablePlanarVehicle(expected, kRange, kRowS), bounds, goal);
 }
 
 // The errors that the plan expects are those that fit_planar() finds after the drive, within a
@@ -130,7 +136,7 @@ TEST(DrivePlan, KeepsTheBounds) {
     const DriveBounds bounds{.time_s = 30.0, .speed_m_s = 0.5, .radius_m = 5.0};
     const DrivePlan plan = plan_for(expected, bounds);
     EXPECT_LE(plan.duration_s(), bounds.time_s);
-    EXPECT_LE(plan.farthest_m, bounds.radius_m);
+    EXPECT_LE(plan.extent.farthest_m, bounds.radius_m);
     NoisyDrive again(seed);
     for (const Manoeuvre& manoeuvre : plan.manoeuvres) {
       for (const HeldSpeeds& part : manoeuvre.parts) {
@@ -167,6 +173,167 @@ TEST(DrivePlan, EvidenceGrowsWithTheSquareOfTheChange) {
   EXPECT_GT(small, 0.0);
   EXPECT_NEAR(nats("th2", "drag", 0.2) / small, 4.0, 0.8);
   EXPECT_NEAR(nats("th2", "drag", 0.1), nats("drag", "th2", 0.1), 1e-6 * small);
+}
+
+vehicle::Scenario gentle_heavy() {
+  vehicle::Scenario scenario =
+      vehicle::read_scenario(KELPIE_SOURCE_DIR "/scenarios/bluerov2_heavy.toml");
+  scenario.excitation.effort << 12, 12, 10, 1, 1, 1;
+  scenario.excitation.dither = 0.02;
+  return scenario;
+}
+
+/// The simulated BlueROV2 Heavy with a DVL's noise: a gentle pilot, then what is planned.
+class HeavyDrive {
+ public:
+  explicit HeavyDrive(std::uint64_t seed)
+      : scenario_(gentle_heavy()),
+        simulator_(scenario_.vehicle,
+                   vehicle::make_plant(scenario_.vehicle, scenario_.configurations.front()),
+                   Eigen::Vector3d::Zero(), vehicle::State{}),
+        sensors_(scenario_.noise, seed),
+        pilot_(scenario_.vehicle, scenario_.excitation, seed) {}
+
+  void pilot(double duration_s) {
+    for (int tick = 0; tick < ticks(duration_s); ++tick) {
+      advance(pilot_.advance(simulator_.state(), vehicle::kTickS, 1.0));
+    }
+  }
+
+  void hold(const std::vector<double>& shares, double duration_s) {
+    for (int tick = 0; tick < ticks(duration_s); ++tick) {
+      advance(Eigen::Map<const Eigen::VectorXd>(shares.data(), 8));
+    }
+  }
+
+  DriveMotion motion() const {
+    const Eigen::Vector3d angles = vehicle::euler_angles(simulator_.state().attitude);
+    const Eigen::Vector3d& position = simulator_.state().position_m;
+    DriveMotion motion{.position_m = {position.x(), position.y(), position.z()},
+                       .angles_rad = {angles.x(), angles.y(), angles.z()}};
+    std::ranges::copy(simulator_.state().velocity, motion.velocity.begin());
+    return motion;
+  }
+
+  /// From here on, as far from here.
+  DriveExtent extent_of(const DrivePlan& plan) {
+    const DriveMotion start = motion();
+    DriveExtent extent;
+    for (const Manoeuvre& manoeuvre : plan.manoeuvres) {
+      for (const HeldSpeeds& part : manoeuvre.parts) {
+        for (double left_s = part.duration_s; left_s > 1e-9; left_s -= 0.1) {
+          hold(part.speeds, 0.1);
+          DriveMotion now = motion();
+          for (std::size_t i = 0; i < 3; ++i) {
+            now.position_m[i] -= start.position_m[i];
+          }
+          extent.include(now);
+        }
+      }
+    }
+    return extent;
+  }
+
+  SixAxisRows rows() const { return six_axis_rows(log_, scenario_.vehicle); }
+
+ private:
+  static int ticks(double duration_s) {
+    return static_cast<int>(std::lround(duration_s / vehicle::kTickS));
+  }
+
+  void advance(const vehicle::RotorSpeeds& commands) {
+    simulator_.advance(commands);
+    if (++ticks_ % 5 == 0) {
+      const vehicle::State& state = simulator_.state();
+      log_.push_back(
+          {.t_s = simulator_.time_s(),
+           .configuration = 0,
+           .velocity = sensors_.measure(state.velocity),
+           .attitude_rad = sensors_.measure_attitude(vehicle::euler_angles(state.attitude)),
+           .commands = 1500.0 + 400.0 * simulator_.commands().array(),
+           .voltage_v = simulator_.voltage_v(),
+           .acceleration = vehicle::Vector6::Zero(),
+           .true_acceleration = vehicle::Vector6::Zero()});
+    }
+  }
+
+  vehicle::Scenario scenario_;
+  vehicle::Simulator simulator_;
+  vehicle::SixAxisSensors sensors_;
+  vehicle::Pilot pilot_;
+  std::vector<vehicle::SixAxisRow> log_;
+  int ticks_ = 0;
+};
+
+double number_of(const ParameterFit& fit, const std::string& name) {
+  const auto found = std::ranges::find(fit.parameters, name, &FittedParameter::name);
+  return interval_share(fit, static_cast<std::size_t>(found - fit.parameters.begin()));
+}
+
+/// A pilot's minute, a rest, the plan for heave and pitch, and the drive.
+struct HeavyPlan {
+  DriveBounds bounds{.time_s = 30.0, .radius_m = 5.0, .depth_m = 1.5, .tilt_rad = 0.4};
+  DrivePlan plan;
+  DriveExtent extent;
+  SixAxisFit before, after;
+
+  HeavyPlan() {
+    HeavyDrive drive(1);
+    drive.pilot(60.0);
+    drive.hold(std::vector(8, 0.0), 8.0);
+    const ExpectedSixAxisFit expected(drive.rows());
+    before = fit_six_axes(drive.rows());
+    const std::size_t thrusters = before.thrusters.size();
+    const DrivableSixAxisVehicle vehicle(
+        expected, {std::vector(thrusters, -1.0), std::vector(thrusters, 1.0)}, 1.0);
+    const DriveGoal goal =
+        telling_goal(expected, wanted_places(expected.now(), {"heave_drag", "pitch_inertia"}),
+                     0.005, [](ParameterFit&) {});
+    DriveMotion start = drive.motion();
+    start.position_m = {};
+    plan = plan_drive(vehicle, bounds, goal, start);
+    extent = drive.extent_of(plan);
+    after = fit_six_axes(drive.rows());
+  }
+};
+
+const HeavyPlan& heavy_plan() {
+  static const HeavyPlan plan;
+  return plan;
+}
+
+TEST(DrivePlan, KeepsDepthAndTilt) {
+  const HeavyPlan& heavy = heavy_plan();
+  EXPECT_TRUE(heavy.plan.extent.within(heavy.bounds));
+  EXPECT_LE(heavy.extent.farthest_m, heavy.bounds.radius_m);
+  EXPECT_LE(heavy.extent.fastest_m_s, heavy.bounds.speed_m_s);
+  EXPECT_LE(heavy.extent.depth_m, heavy.bounds.depth_m);
+  EXPECT_LE(heavy.extent.tilt_rad, heavy.bounds.tilt_rad);
+}
+
+TEST(DrivePlan, HeaveAndPitchAreToldByHeaveAndPitch) {
+  const HeavyPlan& heavy = heavy_plan();
+  EXPECT_EQ(heavy.plan.names, (std::vector<std::string>{"pitch_inertia", "heave_linear_drag",
+                                                        "heave_quadratic_drag"}));
+  const auto has = [&](const char* axis) {
+    return std::ranges::any_of(heavy.plan.manoeuvres, [&](const Manoeuvre& manoeuvre) {
+      return manoeuvre.name.starts_with(axis) || manoeuvre.name.find("of all") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(has("heave"));
+  EXPECT_TRUE(has("pitch"));
+}
+
+TEST(DrivePlan, ExpectsTheErrorsOfSixAxes) {
+  const HeavyPlan& heavy = heavy_plan();
+  for (std::size_t i = 0; i < heavy.plan.names.size(); ++i) {
+    const double ratio =
+        heavy.plan.countdown.back().numbers[i] / number_of(heavy.after, heavy.plan.names[i]);
+    EXPECT_GT(ratio, 0.5) << heavy.plan.names[i];
+    EXPECT_LT(ratio, 2.0) << heavy.plan.names[i];
+    EXPECT_LT(number_of(heavy.after, heavy.plan.names[i]),
+              number_of(heavy.before, heavy.plan.names[i]));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/log_options.hpp"
+#include "study/six_axes.hpp"
+
+namespace kelpie::cli {
+
+/// The options of a command that identifies on six axes, beside those of the log.
+struct SixAxisOptions {
+  std::string vehicle;  ///< file
+  std::string frame;
+  std::string volts;
+};
+
+/// A log of six axes of the vehicle of a file.
+struct SixAxisLog {
+  study::LearnPlan plan;
+  study::SixAxisColumns columns;
+  Frame frame = Frame::frd;
+  double neutral = study::kRestUs;  ///< as of study::six_axis_rows()
+  SixAxisSettings how{};
+};
+
+/// Reads the log; nothing where columns are missing, which `why` then names. Throws as plan_log()
+/// and study::six_axis_columns() do.
+std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions& six,
+                                       const vehicle::VehicleParameters& vehicle, std::string& why);
+
+/// Thrusts of --thrust, N per square of the log's unit, as of full commands.
+std::vector<std::pair<std::string, double>> of_full_commands(
+    std::vector<std::pair<std::string, double>> thrusts, const vehicle::VehicleParameters& vehicle);
+
+}  // namespace kelpie::cli
