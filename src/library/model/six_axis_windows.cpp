@@ -60,8 +60,10 @@ Eigen::MatrixXd curve_terms(const SixAxisRows& rows, const SixAxisWindows& windo
     if (!windows.sought[k]) {
       continue;
     }
+    // NOLINTBEGIN(misc-const-correctness): changed by pointers to members
     ThrustCurve above = windows.curve;
     ThrustCurve below = windows.curve;
+    // NOLINTEND(misc-const-correctness)
     above.*kThrustCurve[k] += kNudge[k];
     below.*kThrustCurve[k] = std::max(0.0, below.*kThrustCurve[k] - kNudge[k]);
     const Eigen::MatrixXd change = thrusts_of(speeds_of(rows, above), parameters) -

@@ -132,7 +132,7 @@ WeakRows DrivablePlanarVehicle::windows(const SixAxisRows& drive) const {
                   .starts = drive.starts};
   rows.thrusters.resize(push_.range().most.size());
   for (std::size_t i = 0; i < drive.velocities.size(); i += kSixAxes) {
-    for (const std::size_t axis : {0, 1, 5}) {
+    for (const std::size_t axis : {0U, 1U, 5U}) {
       rows.velocities.push_back(drive.velocities[i + axis]);
     }
   }
