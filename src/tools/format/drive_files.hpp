@@ -9,7 +9,7 @@
 
 namespace kelpie::format {
 
-/// A planned drive with the content of the drive's files: docs/howto/identify.md, "Drive this next".
+/// A planned drive with the content of its files: docs/howto/identify.md, "Drive this next".
 struct PlannedDrive {
   std::string source;  ///< log
   std::vector<std::string> thrusters{};

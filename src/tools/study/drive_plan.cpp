@@ -27,6 +27,7 @@ constexpr std::size_t kDraws = 12;      // vehicles besides the estimate
 constexpr double kUnknownShare = 0.3;   // of a parameter that is not told
 constexpr double kCoastS = 6.0;         // after a drive, thrusters off
 constexpr const char* kLoad = "load";   // a change of all inertias
+constexpr double kNarrower = 0.95;      // bounds of depth and tilt: delays, peaks between steps
 constexpr double kMostTurnsPerS = 1.0;  // of a plausible vehicle
 
 // What a parameter is, by its name.
@@ -294,6 +295,8 @@ bool DriveExtent::within(const DriveBounds& bounds) const {
 PossibleVehicles::PossibleVehicles(const DrivableVehicle& vehicle, const DriveBounds& bounds,
                                    const DriveMotion& start)
     : bounds_(bounds), motions_(1 + kDraws, start) {
+  bounds_.depth_m *= kNarrower;
+  bounds_.tilt_rad *= kNarrower;
   const ParameterFit& fit = vehicle.expected().now();
   vehicles_.push_back(vehicle.vehicle_of(fit));
   const Eigen::MatrixXd root = root_of_errors(fit);
