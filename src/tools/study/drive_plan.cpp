@@ -27,7 +27,7 @@ constexpr std::size_t kDraws = 12;      // vehicles besides the estimate
 constexpr double kUnknownShare = 0.3;   // of a parameter that is not told
 constexpr double kCoastS = 6.0;         // after a drive, thrusters off
 constexpr const char* kLoad = "load";   // a change of all inertias
-constexpr double kNarrower = 0.95;      // bounds of depth and tilt: delays, peaks between steps
+constexpr double kNarrower = 0.9;       // bounds of depth and tilt: delays, peaks between steps
 constexpr double kMostTurnsPerS = 1.0;  // of a plausible vehicle
 
 // What a parameter is, by its name.
