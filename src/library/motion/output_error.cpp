@@ -38,15 +38,18 @@ double cost_of(const PoseErrors& errors, const std::vector<PathPiece>& pieces,
                const PoseNoise& noise) {
   double cost = 0.0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    for (Index row = 0; row < errors[i].cols(); ++row) {
+    for (Index at = 0; at < errors[i].cols(); ++at) {
       for (Index part = 0; part < 3; ++part) {
-        if (std::isfinite(pieces[i].poses(part, row)) && std::isfinite(noise(part))) {
-          cost += huber(errors[i](part, row) / noise(part));
+        if (std::isfinite(pieces[i].poses(part, at)) && std::isfinite(noise(part))) {
+          cost += huber(errors[i](part, at) / noise(part));
         }
       }
     }
   }
-  return std::isfinite(cost) ? cost : kNotCounted;
+  if (!std::isfinite(cost)) {
+    cost = kNotCounted;
+  }
+  return cost;
 }
 
 // Normal equations of the parameters and of the start of each piece.

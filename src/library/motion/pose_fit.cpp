@@ -228,10 +228,10 @@ double correlation_sum(const std::vector<PathPiece>& pieces, const PoseErrors& e
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(lags + 1);
   Eigen::VectorXd pairs = Eigen::VectorXd::Constant(lags + 1, 1e-300);
   for (const Eigen::Matrix3Xd& of_piece : errors) {
-    for (Index row = 0; row < of_piece.cols(); ++row) {
-      for (Index lag = 0; lag <= std::min(lags, row); ++lag) {
-        const double product = std::clamp(of_piece(part, row), -most, most) *
-                               std::clamp(of_piece(part, row - lag), -most, most);
+    for (Index at = 0; at < of_piece.cols(); ++at) {
+      for (Index lag = 0; lag <= std::min(lags, at); ++lag) {
+        const double product = std::clamp(of_piece(part, at), -most, most) *
+                               std::clamp(of_piece(part, at - lag), -most, most);
         if (std::isfinite(product)) {
           sums(lag) += product;
           pairs(lag) += 1.0;

@@ -32,7 +32,8 @@ class PathEquation {
   PathEquation(const Eigen::VectorXd& parameters, const std::vector<Index>& sought)
       : p_(parameters),
         sought_(sought),
-        thrusters_((parameters.size() - PathPlace::count(0)) / PlanarPlace::per_thruster),
+        thrusters_((parameters.size() - PathPlace::count(0)) /
+                   static_cast<Index>(PlanarPlace::per_thruster)),
         sway_inertia_(1.0 + p_(kMunk) * p_(kYawInertia)),
         by_parameter_(3, parameters.size()) {
     Eigen::Matrix3d mass = Eigen::Matrix3d::Identity();

@@ -131,8 +131,10 @@ ParameterFit drawn_fit(const ParameterFit& fit, const Eigen::MatrixXd& root, Ran
 // Rows of the estimate under way, and the windows of the whole drive so far.
 class DriveRecord {
  public:
-  DriveRecord(const DrivableVehicle& vehicle, const DriveMotion& start)
-      : vehicle_(vehicle), step_(vehicle.vehicle_of(vehicle.expected().now())), motion_(start) {}
+  DriveRecord(const DrivableVehicle& vehicle, DriveMotion start)
+      : vehicle_(vehicle),
+        step_(vehicle.vehicle_of(vehicle.expected().now())),
+        motion_(std::move(start)) {}
 
   void add(const Manoeuvre& manoeuvre) {
     for (const HeldSpeeds& part : manoeuvre.parts) {
@@ -313,7 +315,7 @@ bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<DriveMoti
     for (int step = 0; step < steps; ++step) {
       vehicles_[i](part.speeds, kManoeuvreStepS / kSubsteps, motion);
       extent.include(motion);
-      if (!(extent.within(bounds_) && std::abs(motion.velocity[5]) < kFullTurn * kMostTurnsPerS)) {
+      if (!extent.within(bounds_) || !(std::abs(motion.velocity[5]) < kFullTurn * kMostTurnsPerS)) {
         return false;
       }
     }
