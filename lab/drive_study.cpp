@@ -213,18 +213,8 @@ class SixAxisLoggedDrive : public LoggedDrive {
     simulator_.advance(first_.advance(simulator_.state(), vehicle::kTickS, 1.0));
   }
   void log() override {
-    const vehicle::State& state = simulator_.state();
-    log_.push_back(
-        {.t_s = simulator_.time_s(),
-         .configuration = 0,
-         .velocity = sensors_.measure(state.velocity),
-         .attitude_rad = sensors_.measure_attitude(vehicle::euler_angles(state.attitude)),
-         .commands = simulator_.commands().unaryExpr([this](double command) {
-           return vehicle::command_in_unit(vehicle_.command_unit, command);
-         }),
-         .voltage_v = simulator_.voltage_v(),
-         .acceleration = vehicle::Vector6::Zero(),
-         .true_acceleration = vehicle::Vector6::Zero()});
+    const vehicle::Vector6 velocity = sensors_.measure(simulator_.state().velocity);
+    log_.push_back(vehicle::six_axis_row(simulator_, vehicle_.command_unit, velocity, sensors_));
   }
 
   const vehicle::VehicleParameters& vehicle_;

@@ -32,9 +32,9 @@ constexpr std::array<const char*, SixAxisPlace::thrusters> kVehicleNames{
     "net_weight",           "roll_moment",         "pitch_moment",         "righting_moment"};
 constexpr std::array<const char*, SixAxisPlace::curve_size> kCurveNames{"lag", "delay", "dead_band",
                                                                         "volts_exponent"};
-// The largest steps and values of the parameters above.
 constexpr double kUnseen = 10.0;  // error of what was never seen, over the value
 constexpr double kStudent = kIdentification.student90 / kNormal90;
+// The largest steps and values of the parameters of the curve.
 constexpr std::array kMostStep{0.1, 0.1, 0.05, 0.5};
 constexpr std::array kMostValue{5.0, 2.0, 0.5, 3.0};
 

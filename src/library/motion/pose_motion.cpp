@@ -211,7 +211,7 @@ PathStates drive_piece(const PathPiece& piece, const Eigen::VectorXd& parameters
   const Index columns = with_jacobian ? static_cast<Index>(sought.size()) + 6 : 0;
   PathStates path{.states = Eigen::MatrixXd(6, rows),
                   .jacobian = Eigen::MatrixXd(3 * rows, columns)};
-  const double shift_s = parameters(parameters.size() - 3);
+  const double shift_s = parameters(PathPlace::shift(piece.speeds.rows()));
   PoseState s = start;
   StateSlopes by = StateSlopes::Zero(6, columns);
   if (with_jacobian) {

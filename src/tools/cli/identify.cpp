@@ -238,10 +238,7 @@ file::FileSet files_of(const Identified& result, const std::vector<EngineFile>& 
 void run_identify(const IdentifyArguments& given) {
   given.answer.begin();
   IdentifyArguments options = given;
-  if (!options.six.volts.empty()) {
-    options.log.also.push_back(options.six.volts);
-  }
-  body_frame(options.six.frame, false);  // a wrong name is told before a log is read
+  begin_six_axes(options.six, options);
   const Base base =
       options.six.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.six.vehicle));
   const study::KnownThrust wish = known_thrust(options, base);

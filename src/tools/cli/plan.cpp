@@ -217,11 +217,8 @@ format::PlannedDrive planned(const DriveArguments& options) {
 void run_plan(const DriveArguments& given) {
   given.answer.begin();
   DriveArguments options = given;
-  if (!options.six.volts.empty()) {
-    options.log.also.push_back(options.six.volts);
-  }
-  body_frame(options.six.frame, false);  // a wrong name is told before a log is read
-  known_thrusts(options.thrust);         // a mistake is told before a log is read
+  begin_six_axes(options.six, options);
+  known_thrusts(options.thrust);  // a mistake is told before a log is read
   if (!options.apart.empty() && !options.tell.empty()) {
     throw InputError("--apart", "and --tell are two aims: give one");
   }

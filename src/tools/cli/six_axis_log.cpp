@@ -5,6 +5,13 @@
 
 namespace kelpie::cli {
 
+void begin_six_axes(const SixAxisOptions& six, PlanOptions& options) {
+  if (!six.volts.empty()) {
+    options.log.also.push_back(six.volts);
+  }
+  body_frame(six.frame, false);
+}
+
 std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions& six,
                                        const vehicle::VehicleParameters& vehicle,
                                        std::string& why) {

@@ -27,6 +27,10 @@ struct SixAxisLog {
   SixAxisSettings how{};
 };
 
+/// Makes the supply an input of the log. Throws InputError (--frame) on a wrong name, before a log
+/// is read.
+void begin_six_axes(const SixAxisOptions& six, PlanOptions& options);
+
 /// Reads the log; nothing where columns are missing, which `why` then names. Throws as plan_log()
 /// and study::six_axis_columns() do.
 std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions& six,

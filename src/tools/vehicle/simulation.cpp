@@ -172,16 +172,10 @@ class SixAxisRecorder {
       measure();
     }
     if (ticks_ % row_ticks_ == 0) {
-      rows_.push_back(
-          {.t_s = simulator_.time_s(),
-           .configuration = configuration,
-           .velocity = measurements_.back(),
-           .attitude_rad = sensors_.measure_attitude(euler_angles(simulator_.state().attitude)),
-           .commands = simulator_.commands().unaryExpr(
-               [this](double command) { return command_in_unit(unit_, command); }),
-           .voltage_v = simulator_.voltage_v(),
-           .acceleration = Vector6::Zero(),
-           .true_acceleration = simulator_.acceleration()});
+      SixAxisRow& row =
+          rows_.emplace_back(six_axis_row(simulator_, unit_, measurements_.back(), sensors_));
+      row.configuration = configuration;
+      row.true_acceleration = simulator_.acceleration();
     }
   }
 
@@ -219,6 +213,19 @@ auto recorded(const Scenario& scenario, const Progress& progress) {
 }
 
 }  // namespace
+
+SixAxisRow six_axis_row(const Simulator& simulator, CommandUnit unit, const Vector6& velocity,
+                        SixAxisSensors& sensors) {
+  return {.t_s = simulator.time_s(),
+          .configuration = 0,
+          .velocity = velocity,
+          .attitude_rad = sensors.measure_attitude(euler_angles(simulator.state().attitude)),
+          .commands = simulator.commands().unaryExpr(
+              [unit](double command) { return command_in_unit(unit, command); }),
+          .voltage_v = simulator.voltage_v(),
+          .acceleration = Vector6::Zero(),
+          .true_acceleration = Vector6::Zero()};
+}
 
 std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress) {
   require_plane(scenario.vehicle);

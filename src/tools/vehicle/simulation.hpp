@@ -32,6 +32,15 @@ struct SixAxisRow {
   Vector6 true_acceleration;      ///< without sensors
 };
 
+class Simulator;
+class SixAxisSensors;
+
+/// The row of a log at the simulator's present instant, with a measured velocity; the attitude is
+/// measured here. Commands are those of the last tick, in `unit`. Without accelerations, in
+/// configuration 0.
+SixAxisRow six_axis_row(const Simulator& simulator, CommandUnit unit, const Vector6& velocity,
+                        SixAxisSensors& sensors);
+
 /// Called now and then with the finished share, in [0, 1].
 using Progress = std::function<void(double share)>;
 

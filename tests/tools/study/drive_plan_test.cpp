@@ -244,16 +244,9 @@ class HeavyDrive {
   void advance(const vehicle::RotorSpeeds& commands) {
     simulator_.advance(commands);
     if (++ticks_ % 5 == 0) {
-      const vehicle::State& state = simulator_.state();
+      const vehicle::Vector6 velocity = sensors_.measure(simulator_.state().velocity);
       log_.push_back(
-          {.t_s = simulator_.time_s(),
-           .configuration = 0,
-           .velocity = sensors_.measure(state.velocity),
-           .attitude_rad = sensors_.measure_attitude(vehicle::euler_angles(state.attitude)),
-           .commands = 1500.0 + 400.0 * simulator_.commands().array(),
-           .voltage_v = simulator_.voltage_v(),
-           .acceleration = vehicle::Vector6::Zero(),
-           .true_acceleration = vehicle::Vector6::Zero()});
+          vehicle::six_axis_row(simulator_, scenario_.vehicle.command_unit, velocity, sensors_));
     }
   }
 
