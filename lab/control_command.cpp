@@ -243,8 +243,7 @@ std::vector<Mishap> wanted_mishaps(const std::vector<std::string>& names) {
   }
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) == known.end()) {
-      throw InputError("--mishap", "'" + name + "' is no mishap" + did_you_mean(name, known) +
-                                       "; there are " + join_text(known, ", "));
+      throw InputError("--mishap", unknown_name(name, "mishap", known));
     }
   }
   return wanted;

@@ -289,8 +289,7 @@ std::vector<HostileKind> chosen_kinds(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const auto kind = std::ranges::find(all, name, &HostileKind::name);
     if (kind == all.end()) {
-      throw InputError("--kinds", "there is no kind '" + name + "'" + did_you_mean(name, known) +
-                                      "; the kinds: " + join_text(known, ", "));
+      throw InputError("--kinds", unknown_name(name, "kind", known));
     }
     chosen.push_back(*kind);
   }

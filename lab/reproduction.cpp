@@ -79,9 +79,7 @@ vehicle::Scenario planned_scenario(const fs::path& folder, const std::string& na
   if (!fs::exists(file)) {
     const std::vector<std::string> names = scenario_names(folder);
     throw InputError({.file = folder.string(), .line = 0, .field = {}},
-                     "there is no scenario '" + name + "'" + did_you_mean(name, names) +
-                         (names.empty() ? "; the folder has none" : "; it has ") +
-                         join_text(names, ", "));
+                     names.empty() ? "holds no scenario" : unknown_name(name, "scenario", names));
   }
   vehicle::Scenario scenario = vehicle::read_scenario(file);
   for (vehicle::Phase& phase : scenario.phases) {

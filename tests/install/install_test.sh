@@ -60,7 +60,7 @@ for file in "${manual[@]/#/man/}" bash-completion/completions/kelpie kelpie/scen
 done
 if [ -x "$prefix/bin/kelpie-lab" ]; then  # it finds its scenarios, wherever it stands
   (cd "$stage" && "$prefix/bin/kelpie-lab" reproduce --scenario none --out lab) >"$stage/log" 2>&1 ||
-    grep -qF "$prefix/share/kelpie/scenarios: there is no scenario 'none'; it has aba" "$stage/log" ||
+    grep -qF "$prefix/share/kelpie/scenarios: 'none' is no scenario; there are aba" "$stage/log" ||
     fail "kelpie-lab doesn't find its scenarios"
 fi
 grep -q "<version>$version</version>" "$prefix/share/kelpie/package.xml" ||

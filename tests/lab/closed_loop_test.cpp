@@ -81,6 +81,18 @@ TEST(ClosedLoop, AnOutageIsBridged) {
   EXPECT_LT(flown.after, 0.1);
 }
 
+// In a current the thrusters are whole: with a diagnosis the vehicle follows as well as without.
+TEST(ClosedLoop, ReallocationDoesNoHarmInACurrent) {
+  const vehicle::VehicleParameters vehicle = dagon();
+  const NominalModel nominal(vehicle);
+  const Mission mission{.path = PathKind::lawn_mower, .mishap = Mishap::current};
+  const DynamicsModel model = commissioned(vehicle, 600.0, 1001);
+  const MissionErrors plain = fly(vehicle, mission, *make_learned(nominal, model));
+  const MissionErrors reallocated = fly(vehicle, mission, *make_learned(nominal, model, true));
+  EXPECT_LT(plain.after, 0.02);
+  EXPECT_LT(reallocated.after, 1.2 * plain.after);
+}
+
 TEST(SlopeWindow, GivesTheSlopeOfTheMiddle) {
   SlopeWindow window;
   std::optional<std::pair<Sensed, Eigen::Vector3d>> sample;

@@ -59,7 +59,7 @@ TEST_F(HostileCommand, TableAndNumbersAgreeWithAnyNumberOfThreads) {
 
 TEST_F(HostileCommand, RefusesBadInput) {
   testing::expect_refused(run("hostile --kinds cleam"),
-                          "--kinds: there is no kind 'cleam' (did you mean 'clean'?)");
+                          "--kinds: 'cleam' is no kind (did you mean 'clean'?)");
   testing::expect_refused(run("hostile --seeds 0"), "--seeds");
   testing::expect_refused(run("hostile --kinds clean --set bufer=1"), "bufer");
 }

@@ -53,8 +53,8 @@ TEST_F(Reproduce, WritesPageAndNumbersWithoutTheRealLog) {
 }
 
 TEST_F(Reproduce, RefusesBadInput) {
-  expect_refused("--scenario tny", "there is no scenario 'tny' (did you mean 'tiny'?)");
-  expect_refused("--scenarios nowhere", "there is no scenario 'paper'; the folder has none");
+  expect_refused("--scenario tny", "'tny' is no scenario (did you mean 'tiny'?)");
+  expect_refused("--scenarios nowhere", "holds no scenario");
   expect_refused("--data nowhere", "nowhere: --data: there is no dagon_config1.csv in it");
   expect_refused("--seeds -1", "--seeds");
   expect_refused("--seeds 0", "--seeds");
@@ -68,8 +68,7 @@ TEST_F(Reproduce, RefusesBadInput) {
 TEST_F(Reproduce, FindsTheScenariosThatCameWithItFromAnyFolder) {
   std::filesystem::remove_all(folder_ / "scenarios");
   const Outcome outcome = run("reproduce --quick --scenario papr --out out");
-  testing::expect_refused(outcome,
-                          "scenarios: there is no scenario 'papr' (did you mean 'paper'?)");
+  testing::expect_refused(outcome, "scenarios: 'papr' is no scenario (did you mean 'paper'?)");
 }
 
 TEST_F(Reproduce, AFolderThatAnotherRunWritesIntoIsRefused) {

@@ -139,7 +139,7 @@ TEST_F(ReproductionTest, StopsWhenAsked) {
 TEST_F(ReproductionTest, RefusesWhatItCannotRun) {
   plan_.scenario = "mainn";
   const std::string unknown = message_of<InputError>([&] { lab::reproduce(plan_); });
-  EXPECT_NE(unknown.find("no scenario 'mainn' (did you mean 'main'?)"), std::string::npos)
+  EXPECT_NE(unknown.find("'mainn' is no scenario (did you mean 'main'?)"), std::string::npos)
       << unknown;
   plan_.scenario = "main";
   plan_.seeds = 0;

@@ -93,7 +93,7 @@ class Diagnosis {
                            const Attitude& attitude = {});
 
   /// Processes one sample. Requires as many inputs and targets as at construction. A sample that is
-  /// not finite is ignored.
+  /// not finite is ignored; a clock set back begins a new block of rows.
   void update(std::span<const double> x, std::span<const double> y, double t);
 
   /// The last kMostFindings changes, the oldest first.
@@ -108,10 +108,9 @@ class Diagnosis {
   bool ready() const;  ///< Whether there are enough rows for a reference.
 
   bool knows_thrust() const;  ///< Whether there was a reference once: for the next two functions.
-  /// What a thruster (an input) at a command does to all axes, at rest: of the vehicle now, with
-  /// the last change as far as it is known, or `nominal`, before any change. Requires
-  /// acceleration and half_width (of 90 % intervals; may be empty) with a value per axis.
-  /// Allocates.
+  /// What a thruster (an input) at a command does to all axes, at rest: of the `nominal` vehicle,
+  /// before thrust first changed, or now, times present(). Requires acceleration and half_width (of
+  /// 90 % intervals; may be empty) with a value per axis. Allocates.
   void thrust(std::size_t input, double command, bool nominal, std::span<double> acceleration,
               std::span<double> half_width = {}) const;
   /// Accelerations at the inputs x of the vehicle now, less those at rest.
@@ -119,8 +118,8 @@ class Diagnosis {
   std::size_t inputs() const;                      ///< Number of inputs.
   std::span<const std::size_t> states() const;     ///< The velocities, in the order of the axes.
   std::span<const std::size_t> body_axes() const;  ///< As constructed.
-  /// Present share of the thrust in the reference of every thruster: of the last change while its
-  /// rows are being gathered, else 1.
+  /// Share of the nominal thrust of every thruster: the sizes of its named changes, multiplied. A
+  /// change without a name counts for none.
   const std::vector<Cause>& present() const;
 
   void visit(Archive& archive);  ///< core/archive.hpp

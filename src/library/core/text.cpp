@@ -82,6 +82,13 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
   return nearest == nullptr ? "" : " (did you mean '" + *nearest + "'?)";
 }
 
+std::string unknown_name(std::string_view name, std::string_view kind,
+                         std::span<const std::string> known) {
+  std::string text = "'" + std::string(name) + "' is no " + std::string(kind);
+  text += did_you_mean(name, known);
+  return known.empty() ? text : text + "; there are " + join_text(known, ", ");
+}
+
 bool parse_number(std::string_view text, double& value) {
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') {
     text.remove_prefix(1);

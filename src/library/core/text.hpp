@@ -24,6 +24,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// letters differ.
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
+/// "'fild' is no field (did you mean 'field'?); there are field, form": the reason of an error.
+std::string unknown_name(std::string_view name, std::string_view kind,
+                         std::span<const std::string> known);
+
 /// The whole of `text` as a number. Returns false on other text ("1.5x", "", "1 2");
 /// accepts "nan", "inf" and a leading '+', whatever the locale.
 bool parse_number(std::string_view text, double& value);

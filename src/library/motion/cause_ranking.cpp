@@ -21,6 +21,13 @@ bool matters(const Explanation& explanation, double size) {
   return !is_share || std::abs(size) >= kDiagnosis.least_share;
 }
 
+// A load that would change the inertia beyond what vehicles carry: where nothing accelerates, an
+// infinite inertia explains every contradiction.
+bool is_plausible(const Explanation& explanation, double size) {
+  return explanation.kind != CauseKind::load ||
+         (size > 1.0 / kDiagnosis.most_inertia - 1.0 && size < kDiagnosis.most_inertia - 1.0);
+}
+
 class Ranker {
  public:
   Ranker(const Comparison& comparison, std::span<const Explanation> list,
@@ -49,6 +56,13 @@ class Ranker {
              same_cause(list_[choice.other], list_[cause]);
     };
     return has(a, b.one) && has(a, b.other) && has(b, a.one) && has(b, a.other);
+  }
+
+  bool plausible_all(const Choice& choice) const {
+    return is_plausible(list_[choice.one], choice.agreement.size[0]) &&
+           (choice.one == choice.other ||
+            is_plausible(list_[choice.other],
+                         choice.agreement.size[list_[choice.one].columns.size()]));
   }
 
   bool matters_all(const Choice& choice) const {
@@ -108,7 +122,9 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   const Ranker ranker(comparison, explanations, alone, rows);
   const auto singles = [&](auto visit) {
     for (std::size_t i = 0; i < explanations.size(); ++i) {
-      visit(ranker.single(i));
+      if (const Choice single = ranker.single(i); ranker.plausible_all(single)) {
+        visit(single);
+      }
     }
   };
   const auto pairs = [&](auto visit) {
@@ -117,7 +133,8 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
         if (ranker.overlap(i, j)) {
           continue;
         }
-        if (const Choice pair = ranker.pair(i, j); ranker.matters_all(pair)) {
+        if (const Choice pair = ranker.pair(i, j);
+            ranker.matters_all(pair) && ranker.plausible_all(pair)) {
           visit(pair);
         }
       }

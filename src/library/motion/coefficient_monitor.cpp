@@ -124,15 +124,12 @@ double CoefficientMonitor::usual_scatter() const {
 void CoefficientMonitor::update_health() {
   const std::span<const double> usual =
       std::span<const double>(usual_).last(explanations_.list().size() + 1);
-  joint_shares(std::max(1.0, *std::ranges::max_element(usual)), health_);
-}
-
-void CoefficientMonitor::joint_shares(double scatter, std::vector<Cause>& shares) const {
-  shares.clear();
+  const double scatter = std::max(1.0, *std::ranges::max_element(usual));
   const double spread = kNormal90 * std::sqrt(scatter);
   const Agreement agreement = comparison_.of(health_columns_);
+  health_.clear();
   for (std::size_t i = 0; i < terms_.commands().size(); ++i) {
-    shares.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));
+    health_.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));
   }
 }
 

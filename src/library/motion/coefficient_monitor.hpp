@@ -56,10 +56,6 @@ class CoefficientMonitor {
   const NormalEquations& reference() const { return reference_; }
   std::size_t watched() const { return watched_; }  ///< Number of fits to the reference so far.
 
-  /// Shares of all thrusters, jointly with a force on each axis, by the last comparison; a cause
-  /// per thruster into `shares`.
-  void joint_shares(double scatter, std::vector<Cause>& shares) const;
-
   /// Makes the changed vehicle the reference: coefficients plus `delta` (empty: unknown), the
   /// weight of the reference times `kept`, and `rows` of the changed vehicle.
   void accept_change(std::span<const double> delta, double kept, const NormalEquations& rows);

@@ -72,9 +72,10 @@ class Diagnosis::State {
   bool is_outlier(std::span<const double> y);
   void close_block(double t);
   void start_finding(double t);
-  void stop_looking();
-  void estimate_present(const Finding& finding, double scatter);
+  void update_present();
+  bool moves_thrust() const;
   std::span<const double> theta_now() const;
+  Eigen::MatrixXd coefficients(bool nominal) const;
   void inspect(double t);
   void report(Finding& finding, const CauseRanking& ranking, double t) const;
   Agreement alone(std::size_t explanation);
@@ -98,8 +99,8 @@ class Diagnosis::State {
   std::size_t found_ = 0;
   std::size_t inputs_;
   std::vector<std::size_t> body_axes_;
-  std::vector<Cause> present_;   // share of each thruster against the reference
-  std::vector<double> nominal_;  // coefficients before the first settled change; empty: none
+  std::vector<Cause> present_;   // share of each thruster against the nominal vehicle
+  std::vector<double> nominal_;  // coefficients before thrust first changed; empty: it has not
   ReferenceFit accepted_;        // coefficients of the reference since the last settled change
   std::size_t accepted_at_ = 0;  // number of fits then; 0: no settled change
 };
@@ -134,6 +135,9 @@ void Diagnosis::State::update(std::span<const double> x, std::span<const double>
   monitor_.terms().evaluate(x, phi_);
   if (monitor_.ready() && is_outlier(y)) {
     return;
+  }
+  if (t < block_start_) {  // a clock set back
+    block_.clear();
   }
   if (block_.rows() == 0.0) {
     block_start_ = t;
@@ -194,7 +198,8 @@ void Diagnosis::State::report_frozen(double t) {
   finding.count = 1;
   finding.explained = 1.0;
   finding.causes[0] = {CauseKind::frozen, standstill_.input(which), value, value, value};
-  stop_looking();
+  looking_ = false;
+  update_present();
   block_.clear();
   guard_ = kDiagnosis.guard_blocks;
 }
@@ -241,7 +246,7 @@ void Diagnosis::State::inspect(double t) {
                   monitor_.usual_scatter(), delta_.size());
   if (inspected_ >= kDiagnosis.first_blocks) {
     report(findings_.back(), ranking, t);
-    estimate_present(findings_.back(), std::max(ranking.dispersion, monitor_.usual_scatter()));
+    update_present();
   }
   const bool chance =
       ranking.state == FindingState::looking && inspected_ >= kDiagnosis.chance_blocks;
@@ -302,19 +307,23 @@ void Diagnosis::State::report(Finding& finding, const CauseRanking& ranking, dou
 // changed. Where that isn't known, most of it goes. A finding of which nothing is left after all
 // its rows was chance, and is taken back.
 void Diagnosis::State::finish(const CauseRanking& ranking) {
-  stop_looking();
+  looking_ = false;
   if (ranking.state == FindingState::looking) {
     findings_.pop_back();
     --found_;
+    update_present();
     monitor_.accept_change({}, 1.0, after_);
     return;
   }
   findings_.back().settled = true;
-  if (nominal_.empty()) {
+  const bool is_named = ranking.state == FindingState::named;
+  if (is_named) {
+    set_delta(ranking.best);
+  }
+  if (nominal_.empty() && (!is_named || moves_thrust())) {
     nominal_.assign(monitor_.fit().theta().begin(), monitor_.fit().theta().end());
   }
-  if (ranking.state == FindingState::named) {
-    set_delta(ranking.best);
+  if (is_named) {
     monitor_.accept_change(delta_, kDiagnosis.kept_named, after_);
   } else {
     monitor_.accept_change({}, kDiagnosis.kept_unnamed, after_);
@@ -323,27 +332,36 @@ void Diagnosis::State::finish(const CauseRanking& ranking) {
   accepted_at_ = monitor_.watched();
 }
 
-void Diagnosis::State::stop_looking() {
-  looking_ = false;
+// The sizes of all named changes of a thruster, one after the other. What has no name changes no
+// thrust: with little excitation the refit of a change that isn't understood is far off.
+void Diagnosis::State::update_present() {
   for (Cause& thruster : present_) {
     thruster = unchanged(thruster.place);
-  }
-}
-
-// Of a named change its thrusters; of any other all thrusters, whatever the cause is.
-void Diagnosis::State::estimate_present(const Finding& finding, double scatter) {
-  if (finding.state != FindingState::named) {
-    monitor_.joint_shares(scatter, present_);
-    return;
-  }
-  for (Cause& thruster : present_) {
-    thruster = unchanged(thruster.place);
-    for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
-      if (cause.kind == CauseKind::thruster && cause.place == thruster.place) {
-        thruster = cause;
+    for (const Finding& finding : findings_) {
+      for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
+        if (finding.state == FindingState::named && cause.kind == CauseKind::thruster &&
+            cause.place == thruster.place) {
+          thruster.size *= cause.size;
+          thruster.lower *= cause.lower;
+          thruster.upper *= cause.upper;
+        }
       }
     }
   }
+}
+
+// Whether delta_ changes a coefficient of thrust.
+bool Diagnosis::State::moves_thrust() const {
+  const MotionTerms& terms = monitor_.terms();
+  const auto delta = columns_of(std::span<const double>(delta_), terms.size());
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const bool is_thrust = std::ranges::any_of(
+        terms.commands(), [&](std::size_t input) { return terms[k].depends_on(input); });
+    if (is_thrust && !delta.row(static_cast<Eigen::Index>(k)).isZero(0.0)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Until the next fit, a settled change is in the reference alone.
@@ -351,23 +369,30 @@ std::span<const double> Diagnosis::State::theta_now() const {
   return accepted_at_ == monitor_.watched() ? accepted_.theta() : monitor_.fit().theta();
 }
 
+// Terms × axes: of the reference, but thrust is that of the nominal vehicle times its share.
+Eigen::MatrixXd Diagnosis::State::coefficients(bool nominal) const {
+  const MotionTerms& terms = monitor_.terms();
+  const auto before = columns_of(
+      nominal_.empty() ? monitor_.fit().theta() : std::span<const double>(nominal_), terms.size());
+  if (nominal) {
+    return before;
+  }
+  Eigen::MatrixXd theta = columns_of(theta_now(), terms.size());
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    for (const Cause& thruster : present_) {
+      if (terms[k].depends_on(thruster.place)) {
+        const auto row = static_cast<Eigen::Index>(k);
+        theta.row(row) = thruster.size * before.row(row);
+      }
+    }
+  }
+  return theta;
+}
+
 // θᵀ(φ(x) − φ(0)).
 void Diagnosis::State::accelerations(std::span<const double> x, bool nominal,
                                      std::span<double> a) const {
-  const MotionTerms& terms = monitor_.terms();
-  Eigen::VectorXd phi = terms_beside_rest(terms, x);
-  for (std::size_t k = 0; !nominal && k < terms.size(); ++k) {
-    for (const Cause& thruster : present_) {
-      phi(static_cast<Eigen::Index>(k)) *=
-          terms[k].depends_on(thruster.place) ? thruster.size : 1.0;
-    }
-  }
-  const bool before = nominal && !nominal_.empty();
-  const auto theta = columns_of(before    ? std::span<const double>(nominal_)
-                                : nominal ? monitor_.fit().theta()
-                                          : theta_now(),
-                                terms.size());
-  as_vector(a) = theta.transpose() * phi;
+  as_vector(a) = coefficients(nominal).transpose() * terms_beside_rest(monitor_.terms(), x);
 }
 
 // Of 90 % intervals, by the rows of the reference and by the present shares.
@@ -376,7 +401,7 @@ void Diagnosis::State::half_widths(std::span<const double> x, std::span<double> 
   const Eigen::MatrixXd inverse = equilibrated_inverse(monitor_.reference().gram());
   const double scatter = phi.dot(inverse * phi) * monitor_.usual_scatter();
   const Eigen::MatrixXd noise = columns_of(monitor_.fit().precision(), widths.size()).inverse();
-  const auto theta = columns_of(theta_now(), monitor_.terms().size());
+  const Eigen::MatrixXd theta = coefficients(true);
   double share_width = 0.0;
   for (const Cause& thruster : present_) {
     share_width += x[thruster.place] != 0.0 ? 0.5 * (thruster.upper - thruster.lower) : 0.0;

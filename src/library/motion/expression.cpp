@@ -196,8 +196,7 @@ class ExpressionParser : TextScanner {
     const auto found = std::ranges::find(columns_, name);
     if (found == columns_.end()) {
       const std::vector<std::string> known(columns_.begin(), columns_.end());
-      fail("no column '" + std::string(name) + "'" + did_you_mean(name, known) + "; there are " +
-           join_text(known, ", "));
+      fail(unknown_name(name, "column", known));
     }
     emit(Code::column, 0.0, static_cast<std::size_t>(found - columns_.begin()));
   }

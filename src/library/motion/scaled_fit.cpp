@@ -25,9 +25,7 @@ std::size_t find_forward(const ParameterFit& fit, const std::string& thruster) {
       }
     }
   }
-  throw InputError("--thrust", "there is no thruster '" + thruster + "'" +
-                                   did_you_mean(thruster, names) + "; there are " +
-                                   join_text(names, ", "));
+  throw InputError("--thrust", unknown_name(thruster, "thruster", names));
 }
 
 // θ → s(θ) θ: `slope` holds d ln s / dθ, `extra` the relative variance of s that has other causes.

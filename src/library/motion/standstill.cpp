@@ -8,8 +8,6 @@
 #include "motion/tuning.hpp"
 
 namespace kelpie {
-namespace {}  // namespace
-
 Standstill::Standstill(std::vector<std::size_t> watched)
     : watched_(std::move(watched)),
       last_(watched_.size(), std::numeric_limits<double>::quiet_NaN()),

@@ -96,7 +96,7 @@ std::vector<std::size_t> find_states(std::string_view specification,
   for (const std::string& name : split_text(wanted, ',')) {
     const auto found = std::ranges::find(inputs, name);
     if (found == inputs.end()) {
-      reject_states("no input '" + name + "'" + did_you_mean(name, inputs));
+      reject_states(unknown_name(name, "input", inputs));
     }
     states.push_back(static_cast<std::size_t>(found - inputs.begin()));
     if (std::ranges::count(states, states.back()) > 1) {

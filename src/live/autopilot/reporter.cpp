@@ -83,8 +83,9 @@ void Reporter::health(const live::Health& health) {
   const std::lock_guard lock(mutex_);
   health_.clear();
   for (const auto& field : live::health_fields<live::Health>()) {
-    if (!field.names.brief.empty()) {
-      health_.emplace_back(field.names.brief, field.value(health));
+    if (const double value = field.names.brief.empty() ? std::nan("") : field.value(health);
+        std::isfinite(value)) {
+      health_.emplace_back(field.names.brief, value);
     }
   }
 }

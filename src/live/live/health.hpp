@@ -107,6 +107,7 @@ struct LearnerHealth {
   std::string doubt{};    ///< why the model is doubtful (RowCheck), in words; empty: no reason
   std::vector<ThrusterHealth> thrusters{};
   std::vector<ParameterHealth> parameters{};  ///< that are to be told
+  std::size_t parameters_known = 0;           ///< of these, as well as was asked
   std::string countdown{};  ///< how many of these are known, and which is known least; empty: none
   std::string authority{};  ///< what is left of it, in words; empty: all, or unknown
   double held_current = std::numeric_limits<double>::quiet_NaN();  ///< Authority::held_current()

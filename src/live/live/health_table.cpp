@@ -28,6 +28,17 @@ double thrusters_watched(const Health& health) {
   return static_cast<double>(health.learner.thrusters.size());
 }
 
+// NaN where no parameter is asked for.
+double parameters_known(const Health& health) {
+  const LearnerHealth& learner = health.learner;
+  return learner.countdown.empty() ? std::nan("") : static_cast<double>(learner.parameters_known);
+}
+
+double parameters_asked(const Health& health) {
+  const LearnerHealth& learner = health.learner;
+  return learner.countdown.empty() ? std::nan("") : static_cast<double>(learner.parameters.size());
+}
+
 std::string commands_text(const Health& health) {
   return health.learner.alignment.text();
 }
@@ -190,6 +201,11 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
     {"countdown", "", "parameters known", "", text, vehicle,
      "how many parameters are known as well as was asked, and the one known least",
      text_at<Health, &Health::learner, &LearnerHealth::countdown>},
+    {"parameters_known", "parameters_known", "", "", count, vehicle,
+     "parameters known as well as was asked", parameters_known, alert(never), brief("par_known")},
+    {"parameters_asked", "parameters_asked", "", "", count, vehicle,
+     "parameters that are to be told; 0 before the first identification", parameters_asked,
+     alert(never), brief("par_asked")},
     {"authority", "authority_lost", "authority left", "", text, vehicle,
      "what the thrusters can still do, where that is less than before",
      text_at<Health, &Health::learner, &LearnerHealth::authority>, alert(present, warn)},

@@ -35,8 +35,7 @@ void require_names(const ParameterSettings& settings, const std::vector<std::str
   study::wanted_places(nameless, settings.tell);
   for (const auto& [name, value] : settings.thrust) {
     if (std::ranges::find(thrusters, name) == thrusters.end()) {
-      throw InputError("--thrust", "'" + name + "' is no thruster" + did_you_mean(name, thrusters) +
-                                       "; there are " + join_text(thrusters, ", "));
+      throw InputError("--thrust", unknown_name(name, "thruster", thrusters));
     }
   }
 }
@@ -131,6 +130,7 @@ void ParameterCountdown::identify() {
 
 void ParameterCountdown::report(LearnerHealth& health) const {
   health.parameters = found_;
+  health.parameters_known = known();
   health.countdown = text();
 }
 

@@ -36,8 +36,7 @@ std::string interface_of(const file::TomlNode& value) {
   std::string text = value.text("a network interface, as in \"eth0\", or its address");
   const std::vector<std::string> known = dds::interfaces_here();
   if (std::ranges::find(known, text) == known.end()) {
-    value.refuse("'" + text + "' is no interface of this machine" + did_you_mean(text, known) +
-                 "; there are " + join_text(known, ", "));
+    value.refuse(unknown_name(text, "interface of this machine", known));
   }
   return text;
 }

@@ -461,8 +461,7 @@ std::size_t Dataset::require_input(const std::string& name, const std::string& n
 std::size_t Dataset::require_input_of(std::string_view option, const std::string& name) const {
   const std::optional<std::size_t> found = find_input(name);
   if (!found) {
-    throw InputError(option, "'" + name + "' is no input" + did_you_mean(name, input_names) +
-                                 "; inputs are " + join_text(input_names, ", "));
+    throw InputError(option, unknown_name(name, "input", input_names));
   }
   return *found;
 }

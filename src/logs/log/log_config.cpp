@@ -318,8 +318,7 @@ class LogConfigReader {
       std::vector<std::string> names;
       std::ranges::transform(plan().sources, std::back_inserter(names),
                              &SamplingPlan::Source::name);
-      user.refuse("'" + name + "' is no state or command" + did_you_mean(name, names) + ": " +
-                  join_text(names, ", "));
+      user.refuse(unknown_name(name, "state or command", names));
     }
     return *found;
   }

@@ -102,8 +102,7 @@ std::vector<EngineFile> wanted_files(const std::vector<std::string>& engines) {
   }
   for (const std::string& engine : engines) {
     if (std::ranges::find(known, engine) == known.end()) {
-      throw InputError("--for", "'" + engine + "' is no simulator" + did_you_mean(engine, known) +
-                                    "; known are " + join_text(known, ", "));
+      throw InputError("--for", unknown_name(engine, "simulator", known));
     }
   }
   std::vector<EngineFile> wanted;

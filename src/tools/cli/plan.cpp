@@ -81,9 +81,7 @@ study::ThrusterRange thruster_range(const DriveArguments& options,
     const auto [name, text] = format::key_and_value(assignment, "--range");
     const auto place = std::ranges::find(thrusters.names, name);
     if (place == thrusters.names.end()) {
-      throw InputError("--range", "'" + name + "' is no thruster of the log" +
-                                      did_you_mean(name, thrusters.names) + "; there are " +
-                                      join_text(thrusters.names, ", "));
+      throw InputError("--range", unknown_name(name, "thruster", thrusters.names));
     }
     const auto at = static_cast<std::size_t>(place - thrusters.names.begin());
     const std::size_t colon = text.find(':');

@@ -40,9 +40,7 @@ void check(const TrainedModel& model, const CodeOptions& options) {
   }
   for (const auto& [column, unit] : options.units) {
     if (std::ranges::find(columns, column) == columns.end()) {
-      throw InputError("--units", "the model has no column '" + column + "'" +
-                                      did_you_mean(column, columns) + "; its columns are " +
-                                      join_text(columns, ", "));
+      throw InputError("--units", unknown_name(column, "column of the model", columns));
     }
   }
 }

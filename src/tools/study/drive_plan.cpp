@@ -379,8 +379,7 @@ std::vector<std::size_t> wanted_places(const ParameterFit& fit,
       known.push_back(parameter.name);
     }
     if (std::ranges::none_of(known, [&](const std::string& of) { return has_words(of, name); })) {
-      throw InputError("--tell", "'" + name + "' is no parameter" + did_you_mean(name, known) +
-                                     "; there are " + join_text(known, ", "));
+      throw InputError("--tell", unknown_name(name, "parameter", known));
     }
   }
   return places;

@@ -38,8 +38,7 @@ ExcitationMode excitation_mode_from(const std::string& name) {
   const std::vector<std::string> names = {"independent", "correlated", "prbs", "steps", "pilot"};
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
-    throw InputError("'" + name + "' is no mode of excitation; there are " +
-                     join_text(names, ", ") + did_you_mean(name, names));
+    throw InputError(unknown_name(name, "mode of excitation", names));
   }
   return static_cast<ExcitationMode>(found - names.begin());
 }

@@ -133,8 +133,7 @@ CommandUnit command_unit_from(const std::string& name) {
   const std::vector<std::string> names(kCommandUnits.begin(), kCommandUnits.end());
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
-    throw InputError("'" + name + "' is no kind of command; there are speed, share and pwm" +
-                     did_you_mean(name, names));
+    throw InputError(unknown_name(name, "kind of command", names));
   }
   return static_cast<CommandUnit>(found - names.begin());
 }

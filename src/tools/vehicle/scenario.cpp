@@ -66,8 +66,7 @@ LogKind log_kind_from(const std::string& name) {
   const std::vector<std::string> names = {"planar", "six_axes"};
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
-    throw InputError("'" + name + "' is no kind of log; there are " + join_text(names, ", ") +
-                     did_you_mean(name, names));
+    throw InputError(unknown_name(name, "kind of log", names));
   }
   return static_cast<LogKind>(found - names.begin());
 }

@@ -211,9 +211,7 @@ std::size_t find_configuration(const file::TomlNode& section,
     }
     names.push_back(configurations[i].name);
   }
-  section["configuration"].refuse("there is no configuration '" + name + "'" +
-                                  did_you_mean(name, names) + "; there are " +
-                                  join_text(names, ", "));
+  section["configuration"].refuse(unknown_name(name, "configuration", names));
 }
 
 void read_phases(const file::TomlNode& root, Scenario& scenario) {

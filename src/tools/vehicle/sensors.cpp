@@ -37,8 +37,7 @@ SensorNoise noise_preset(const std::string& name) {
   std::vector<std::string> names;
   std::transform(presets.begin(), presets.end(), std::back_inserter(names),
                  [](const auto& preset) { return preset.first; });
-  throw InputError("'" + name + "' is no noise preset; there are " + join_text(names, ", ") +
-                   did_you_mean(name, names));
+  throw InputError(unknown_name(name, "noise preset", names));
 }
 
 VelocitySensors::VelocitySensors(const SensorNoise& noise, std::uint64_t seed)

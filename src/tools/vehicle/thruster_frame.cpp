@@ -87,8 +87,7 @@ std::vector<std::string> frame_names() {
 std::vector<Thruster> frame_thrusters(const std::string& frame, const Eigen::Vector3d& size_m) {
   const auto found = std::ranges::find(frames(), frame, &Frame::name);
   if (found == frames().end()) {
-    throw InputError("'" + frame + "' is no frame of ArduSub; there are " +
-                     join_text(frame_names(), ", ") + did_you_mean(frame, frame_names()));
+    throw InputError(unknown_name(frame, "frame of ArduSub", frame_names()));
   }
   std::vector<Thruster> thrusters;
   for (const Place& motor : found->motors) {

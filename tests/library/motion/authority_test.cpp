@@ -106,7 +106,7 @@ class Vehicle {
       std::array<double, 7> x{nu_[0], nu_[1], nu_[2]};
       for (std::size_t j = 0; j < 4; ++j) {
         phase_[j] += 0.25 * (0.2 + 0.13 * static_cast<double>(j) + 0.1 * random_.uniform(0.0, 1.0));
-        x[3 + j] = 4.0 * std::sin(phase_[j]);
+        x[3 + j] = effort * std::sin(phase_[j]);
       }
       std::array<double, 3> y{};
       for (std::size_t i = 0; i < 3; ++i) {
@@ -115,12 +115,15 @@ class Vehicle {
           y[i] += share[j] * kThrust[i][j] * x[3 + j] * std::abs(x[3 + j]);
         }
       }
+      y[0] += push_m_s2 * std::cos(heading_);
+      y[1] -= push_m_s2 * std::sin(heading_);
+      heading_ += 0.25 * nu_[2];
       for (std::size_t i = 0; i < 3; ++i) {
         nu_[i] += 0.25 * y[i];
         y[i] += 0.01 * random_.normal();
       }
-      diagnosis.update(x, y, t_);
-      t_ += 0.25;
+      diagnosis.update(x, y, t);
+      t += 0.25;
     }
   }
 
@@ -133,12 +136,15 @@ class Vehicle {
   }
 
   std::array<double, 4> share{1.0, 1.0, 1.0, 1.0};
+  double effort = 4.0;     // amplitude of the commands
+  double push_m_s2 = 0.0;  // of the water, in a direction of the world
+  double t = 0.0;
 
  private:
   RandomStream random_;
   std::array<double, 3> nu_{};
   std::array<double, 4> phase_{};
-  double t_ = 0.0;
+  double heading_ = 0.0;
 };
 
 Diagnosis diagnosis() {
@@ -205,6 +211,45 @@ TEST(Authority, IsThatOfTheDamagedVehicleAMinuteAfterTheChange) {
       }
     }
   }
+}
+
+// A push of the water turns in the body as the vehicle turns, and is none of the known causes.
+TEST(Authority, AChangeWithoutANameTakesNoThrust) {
+  for (const std::uint64_t seed : {40, 41, 42, 43}) {
+    Vehicle vehicle(seed);
+    Diagnosis learned = diagnosis();
+    vehicle.drive(learned, 600.0);
+    vehicle.push_m_s2 = 0.05;
+    vehicle.effort = 1.5;
+    for (int round = 0; round < 60; ++round) {
+      vehicle.drive(learned, 10.0);
+      const Authority authority(learned, ranges());
+      for (const ThrusterEffect& one : authority.thrusters()) {
+        EXPECT_NEAR(one.share, 1.0, 0.1) << seed << " after " << 10 * round << " s";
+      }
+    }
+    EXPECT_GT(learned.found(), 0U);
+    for (const Finding& finding : learned.findings()) {
+      for (std::size_t i = 0; i < finding.count; ++i) {
+        if (finding.causes[i].kind == CauseKind::load) {
+          EXPECT_GT(finding.causes[i].size, 1.0 / 3.0);
+          EXPECT_LT(finding.causes[i].size, 3.0);
+        }
+      }
+    }
+  }
+}
+
+// A controller that starts anew counts its time from 0.
+TEST(Authority, ALossIsFoundWithAClockThatBeginsAnew) {
+  Vehicle vehicle(44);
+  Diagnosis learned = diagnosis();
+  vehicle.drive(learned, 600.0);
+  vehicle.t = 0.0;
+  vehicle.drive(learned, 30.0);
+  vehicle.share[1] = 0.4;
+  vehicle.drive(learned, 60.0);
+  EXPECT_NEAR(Authority(learned, ranges()).thrusters()[1].share, 0.4, 0.06);
 }
 
 TEST(Authority, CommandsGiveWhatIsWantedOfTheDamagedVehicle) {

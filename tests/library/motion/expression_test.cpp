@@ -50,9 +50,10 @@ TEST(Expression, MeansWhatItSays) {
 }
 
 TEST(Expression, SaysWhatIsWrongAndWhere) {
-  EXPECT_EQ(complaint("u*tth1"),
-            "'u*tth1': no column 'tth1' (did you mean 'th1'?); there are u, v, th1, /odom:twist.x "
-            "(at character 3)");
+  EXPECT_EQ(
+      complaint("u*tth1"),
+      "'u*tth1': 'tth1' is no column (did you mean 'th1'?); there are u, v, th1, /odom:twist.x "
+      "(at character 3)");
   EXPECT_EQ(complaint("u*"), "'u*': ends where a column or number is expected (at character 3)");
   EXPECT_EQ(complaint(""), "'': ends where a column or number is expected (at character 1)");
   EXPECT_EQ(complaint("(u"), "'(u': ')' is missing (at character 3)");

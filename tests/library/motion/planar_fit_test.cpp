@@ -213,7 +213,7 @@ TEST(PlanarFit, TheScaleIsOfForcesAloneAndItsErrorIsInAll) {
       true);
   EXPECT_NE(message_of<InputError>([&] {
               scaled_by_thrust(ratios, {{"d", 1.0}});
-            }).find("no thruster 'd'"),
+            }).find("'d' is no thruster"),
             std::string::npos);
   EXPECT_THROW(scaled_by_thrust(ratios, {{"a", 0.0}}), InputError);
 }

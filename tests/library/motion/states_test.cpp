@@ -61,7 +61,9 @@ TEST(States, RefuseWhatIsNoInputNamingTheNearest) {
   const auto refusal = [](const char* states, std::size_t targets) {
     return message_of<InputError>([&] { find_states(states, kInputs, targets); });
   };
-  EXPECT_EQ(refusal("u,yawrate", 2), "states: no input 'yawrate' (did you mean 'yaw_rate'?)");
+  EXPECT_EQ(refusal("u,yawrate", 2),
+            "states: 'yawrate' is no input (did you mean 'yaw_rate'?); there are u, v, r, th1, "
+            "yaw_rate");
   EXPECT_EQ(refusal("u,u", 2), "states: names 'u' twice");
   EXPECT_EQ(refusal("u,v", 3),
             "states: names 2 inputs; there are 3 targets, and each has its velocity");

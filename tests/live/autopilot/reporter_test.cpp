@@ -76,6 +76,14 @@ TEST(Reporter, TheMainNumbersOfTheHealthGoWithPredictions) {
   EXPECT_EQ(station.rov.values["rows_lost"], 3.0);
   EXPECT_EQ(station.rov.values["msgs_lost"], 0.0);
   EXPECT_EQ(station.rov.heard["NAMED_VALUE_FLOAT"], 1 + 5);
+  health.learner.countdown = "1 of 2 parameters known";
+  health.learner.parameters.resize(2);
+  health.learner.parameters_known = 1;
+  reporter.health(health);
+  predict(reporter, {0.5});
+  station.wait(1.0);
+  EXPECT_EQ(station.rov.values["par_known"], 1.0);
+  EXPECT_EQ(station.rov.values["par_asked"], 2.0);
 }
 
 TEST(Reporter, LongTextsComeInPiecesAndAFloodIsDropped) {

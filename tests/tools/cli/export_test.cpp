@@ -24,7 +24,7 @@ TEST_F(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   Outcome outcome = exported("--name 2fast");
   testing::expect_refused(outcome, "--name: '2fast' can't begin names in C");
   outcome = exported("--units udott=m/s^2");
-  testing::expect_refused(outcome, "no column 'udott' (did you mean 'udot'?)");
+  testing::expect_refused(outcome, "'udott' is no column of the model (did you mean 'udot'?)");
   EXPECT_FALSE(exists("model.c"));
   testing::expect_refused(run("export out/model.json"),
                           "needs --c FILE, --live FILE or --fmu FILE");

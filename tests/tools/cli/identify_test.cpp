@@ -198,7 +198,7 @@ TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
   expect_refused("log.csv --inputs u,v,r,th1,th2,t", "has no name of a thruster's speed");
   expect_refused("log.csv --inputs u,v,r,th1 --thrusters th4", "did you mean 'th1'?");
   expect_refused("log.csv --inputs u,v,r", "nothing drives the vehicle");
-  expect_refused("log.csv --thrust th9=1", "there is no thruster 'th9'");
+  expect_refused("log.csv --thrust th9=1", "'th9' is no thruster");
   expect_refused("log.csv --thrust th1=some", "--thrust: 'some' of 'th1' has to be a number > 0");
   expect_refused("log.csv --surge-added-mass 3", "needs --mass");
   expect_refused("log.csv --mass -3", "--mass: '-3' has to be a number from 1e-06 to 1e+09");

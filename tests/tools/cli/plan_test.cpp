@@ -143,7 +143,7 @@ TEST_F(Plan, MistakesAreRefused) {
   refused("--apart th2,th2", "names the same change twice");
   refused("--apart th2,wings", "'wings' changes nothing that is known");
   refused("--apart th2,drag --tell drag", "two aims");
-  refused("--range th9=-1:1", "'th9' is no thruster of the log");
+  refused("--range th9=-1:1", "'th9' is no thruster");
   refused("--range th1=1:2", "with rest between");
   refused("--range th1=a:b", "has to be NAME=LEAST:MOST");
   refused("--thrust th1=0", "has to be a number > 0");

@@ -68,7 +68,8 @@ TEST_F(RolloutCommand, FollowsCommandsFromAStart) {
 
 TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"log.csv --start w=1", "--start: no velocity 'w' (did you mean 'u'?); the model's are u"},
+      {"log.csv --start w=1",
+       "--start: 'w' is no velocity of the model (did you mean 'u'?); there are u"},
       {"log.csv --start u=fast", "--start u: 'fast' is not a finite number"},
       {"log.csv --horizons 0", "--horizons: '0' has to be a number from 0.001 to 86400"},
       {"log.csv --step -1", "--step: '-1' has to be a number from 0.001 to 60"},

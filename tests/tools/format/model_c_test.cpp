@@ -354,8 +354,7 @@ TEST(ModelC, RefusesWhatIsNoName) {
   options.units = {{"aa", Unit()}};
   EXPECT_EQ(
       message_of<InputError>([&] { format::model_c(model, options); }),
-      "--units: the model has no column 'aa' (did you mean 'a'?); its columns are a, b, c, x, "
-      "y, z");
+      "--units: 'aa' is no column of the model (did you mean 'a'?); there are a, b, c, x, y, z");
   TrainedModel large = model;
   large.axes[0].scaling.target.mean = 1e60;
   options = {};
