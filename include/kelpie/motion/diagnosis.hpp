@@ -118,7 +118,7 @@ class Diagnosis {
   std::size_t inputs() const;                      ///< Number of inputs.
   std::span<const std::size_t> states() const;     ///< The velocities, in the order of the axes.
   std::span<const std::size_t> body_axes() const;  ///< As constructed.
-  /// Share of the nominal thrust of every thruster: the sizes of its named changes, multiplied. A
+  /// Share of the nominal thrust of every thruster, by the named changes of this thruster alone: a
   /// change without a name counts for none.
   const std::vector<Cause>& present() const;
 

@@ -72,7 +72,9 @@ class Diagnosis::State {
   bool is_outlier(std::span<const double> y);
   void close_block(double t);
   void start_finding(double t);
-  void update_present();
+  void update_present(const CauseRanking& ranking);
+  double changed_share(std::size_t input) const;
+  std::span<const double> nominal_theta() const;
   bool moves_thrust() const;
   std::span<const double> theta_now() const;
   Eigen::MatrixXd coefficients(bool nominal) const;
@@ -100,6 +102,7 @@ class Diagnosis::State {
   std::size_t inputs_;
   std::vector<std::size_t> body_axes_;
   std::vector<Cause> present_;   // share of each thruster against the nominal vehicle
+  std::vector<Cause> settled_;   // the same before the change under inspection
   std::vector<double> nominal_;  // coefficients before thrust first changed; empty: it has not
   ReferenceFit accepted_;        // coefficients of the reference since the last settled change
   std::size_t accepted_at_ = 0;  // number of fits then; 0: no settled change
@@ -124,6 +127,7 @@ Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& stat
   for (const std::size_t command : monitor_.terms().commands()) {
     present_.push_back(unchanged(command));
   }
+  settled_ = present_;
 }
 
 void Diagnosis::State::update(std::span<const double> x, std::span<const double> y, double t) {
@@ -199,7 +203,7 @@ void Diagnosis::State::report_frozen(double t) {
   finding.explained = 1.0;
   finding.causes[0] = {CauseKind::frozen, standstill_.input(which), value, value, value};
   looking_ = false;
-  update_present();
+  present_ = settled_;
   block_.clear();
   guard_ = kDiagnosis.guard_blocks;
 }
@@ -246,7 +250,7 @@ void Diagnosis::State::inspect(double t) {
                   monitor_.usual_scatter(), delta_.size());
   if (inspected_ >= kDiagnosis.first_blocks) {
     report(findings_.back(), ranking, t);
-    update_present();
+    update_present(ranking);
   }
   const bool chance =
       ranking.state == FindingState::looking && inspected_ >= kDiagnosis.chance_blocks;
@@ -311,11 +315,12 @@ void Diagnosis::State::finish(const CauseRanking& ranking) {
   if (ranking.state == FindingState::looking) {
     findings_.pop_back();
     --found_;
-    update_present();
+    present_ = settled_;
     monitor_.accept_change({}, 1.0, after_);
     return;
   }
   findings_.back().settled = true;
+  settled_ = present_;
   const bool is_named = ranking.state == FindingState::named;
   if (is_named) {
     set_delta(ranking.best);
@@ -332,22 +337,48 @@ void Diagnosis::State::finish(const CauseRanking& ranking) {
   accepted_at_ = monitor_.watched();
 }
 
-// The sizes of all named changes of a thruster, one after the other. What has no name changes no
-// thrust: with little excitation the refit of a change that isn't understood is far off.
-void Diagnosis::State::update_present() {
-  for (Cause& thruster : present_) {
-    thruster = unchanged(thruster.place);
-    for (const Finding& finding : findings_) {
-      for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
-        if (finding.state == FindingState::named && cause.kind == CauseKind::thruster &&
-            cause.place == thruster.place) {
-          thruster.size *= cause.size;
-          thruster.lower *= cause.lower;
-          thruster.upper *= cause.upper;
-        }
-      }
+// Of the thrusters that a named change concerns. What has no name changes no thrust: with little
+// excitation the refit of a change that isn't understood is far off.
+void Diagnosis::State::update_present(const CauseRanking& ranking) {
+  present_ = settled_;
+  if (ranking.state != FindingState::named) {
+    return;
+  }
+  set_delta(ranking.best);
+  const Finding& finding = findings_.back();
+  for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
+    const auto thruster = std::ranges::find(present_, cause.place, &Cause::place);
+    if (cause.kind == CauseKind::thruster && thruster != present_.end()) {
+      const double half = std::hypot(0.5 * (cause.upper - cause.lower) * thruster->size,
+                                     0.5 * (thruster->upper - thruster->lower) * cause.size);
+      thruster->size = changed_share(cause.place);
+      thruster->lower = thruster->size - half;
+      thruster->upper = thruster->size + half;
     }
   }
+}
+
+// Of a thruster after the change delta_ of the reference: the projection on the nominal thrust,
+// terms weighted by their size in the reference. Not the product of all sizes: a dead thruster that
+// comes back gives many times its last thrust.
+double Diagnosis::State::changed_share(std::size_t input) const {
+  const MotionTerms& terms = monitor_.terms();
+  const auto nominal = columns_of(nominal_theta(), terms.size());
+  const auto reference = columns_of(monitor_.fit().theta(), terms.size());
+  const auto delta = columns_of(std::span<const double>(delta_), terms.size());
+  const auto precision = columns_of(monitor_.fit().precision(), residual_.size());
+  const auto gram = monitor_.reference().gram();
+  double along = 0.0;
+  double square = 0.0;
+  for (Eigen::Index k = 0; k < nominal.rows(); ++k) {
+    for (Eigen::Index axis = 0;
+         terms[static_cast<std::size_t>(k)].depends_on(input) && axis < nominal.cols(); ++axis) {
+      const double weighted = gram(k, k) * precision(axis, axis) * nominal(k, axis);
+      along += weighted * (reference(k, axis) + delta(k, axis));
+      square += weighted * nominal(k, axis);
+    }
+  }
+  return square > 0.0 ? along / square : 1.0;
 }
 
 // Whether delta_ changes a coefficient of thrust.
@@ -369,11 +400,14 @@ std::span<const double> Diagnosis::State::theta_now() const {
   return accepted_at_ == monitor_.watched() ? accepted_.theta() : monitor_.fit().theta();
 }
 
+std::span<const double> Diagnosis::State::nominal_theta() const {
+  return nominal_.empty() ? monitor_.fit().theta() : nominal_;
+}
+
 // Terms × axes: of the reference, but thrust is that of the nominal vehicle times its share.
 Eigen::MatrixXd Diagnosis::State::coefficients(bool nominal) const {
   const MotionTerms& terms = monitor_.terms();
-  const auto before = columns_of(
-      nominal_.empty() ? monitor_.fit().theta() : std::span<const double>(nominal_), terms.size());
+  const auto before = columns_of(nominal_theta(), terms.size());
   if (nominal) {
     return before;
   }
@@ -449,8 +483,10 @@ void Diagnosis::State::visit(Archive& archive) {
   archive.whole(found_);
   archive.list(findings_, kMostFindings,
                [&](Finding& finding) { visit_finding(archive, finding); });
-  for (Cause& thruster : present_) {
-    visit_cause(archive, thruster);
+  for (std::vector<Cause>* const shares : {&present_, &settled_}) {
+    for (Cause& thruster : *shares) {
+      visit_cause(archive, thruster);
+    }
   }
   archive.list(nominal_, delta_.size(), [&](double& number) { archive.number(number); });
   archive.part("accepted", accepted_);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 // As PNG's: a transfer that changes line ends or drops the eighth bit shows in the first bytes.
 constexpr std::string_view kMagic = "\x8BKELPIE\r\n\x1A\n\n";
-constexpr std::uint64_t kVersion = 4;
+constexpr std::uint64_t kVersion = 5;
 constexpr std::size_t kVersionBytes = 4;
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kChecksumBytes = 4;

@@ -240,6 +240,18 @@ TEST(Authority, AChangeWithoutANameTakesNoThrust) {
   }
 }
 
+// A propeller that was blocked runs again.
+TEST(Authority, ADeadThrusterThatComesBackHasItsThrust) {
+  Vehicle vehicle(45);
+  Diagnosis learned = diagnosis();
+  vehicle.drive(learned, 600.0);
+  for (const double share : {0.0, 1.0, 0.5}) {
+    vehicle.share[2] = share;
+    vehicle.drive(learned, 300.0);
+    EXPECT_NEAR(Authority(learned, ranges()).thrusters()[2].share, share, 0.06);
+  }
+}
+
 // A controller that starts anew counts its time from 0.
 TEST(Authority, ALossIsFoundWithAClockThatBeginsAnew) {
   Vehicle vehicle(44);

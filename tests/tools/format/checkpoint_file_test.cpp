@@ -56,17 +56,17 @@ TEST(CheckpointFile, EveryFlippedBitIsRefused) {
 // As Python's zlib.crc32 says: other programs can check a file.
 TEST(CheckpointFile, EndsInTheChecksumOfAllBytesBefore) {
   const std::string bytes = format::checkpoint_bytes(kExample);
-  EXPECT_EQ(bytes.substr(bytes.size() - 4), "\x80\xA8\xBD\xE1");
+  EXPECT_EQ(bytes.substr(bytes.size() - 4), "\xE5\xA3\xC4\x88");
 }
 
 TEST(CheckpointFile, OlderAndNewerVersionsAndAnotherFileAreToldApart) {
   std::string bytes = format::checkpoint_bytes(kExample);
   bytes[12] = '\x01';
   EXPECT_EQ(refusal(bytes),
-            "c.kelpie: is a checkpoint of version 1; this kelpie reads only version 4");
-  bytes[12] = '\x05';
+            "c.kelpie: is a checkpoint of version 1; this kelpie reads only version 5");
+  bytes[12] = '\x06';
   EXPECT_EQ(refusal(bytes),
-            "c.kelpie: is a checkpoint of version 5; this kelpie reads only version 4");
+            "c.kelpie: is a checkpoint of version 6; this kelpie reads only version 5");
   EXPECT_EQ(refusal("t,u,udot\n0,1,2\n"), "c.kelpie: is no checkpoint of kelpie");
 }
 
