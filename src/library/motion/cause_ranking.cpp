@@ -58,18 +58,12 @@ class Ranker {
     return has(a, b.one) && has(a, b.other) && has(b, a.one) && has(b, a.other);
   }
 
-  bool plausible_all(const Choice& choice) const {
-    return is_plausible(list_[choice.one], choice.agreement.size[0]) &&
+  // Whether `test` holds of each cause of a choice and its size.
+  bool all_of(const Choice& choice, bool (*test)(const Explanation&, double)) const {
+    const Explanation& one = list_[choice.one];
+    return test(one, choice.agreement.size[0]) &&
            (choice.one == choice.other ||
-            is_plausible(list_[choice.other],
-                         choice.agreement.size[list_[choice.one].columns.size()]));
-  }
-
-  bool matters_all(const Choice& choice) const {
-    const bool first = matters(list_[choice.one], choice.agreement.size[0]);
-    return first &&
-           (choice.one == choice.other ||
-            matters(list_[choice.other], choice.agreement.size[list_[choice.one].columns.size()]));
+            test(list_[choice.other], choice.agreement.size[one.columns.size()]));
   }
 
   bool overlap(std::size_t i, std::size_t j) const {
@@ -122,7 +116,7 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   const Ranker ranker(comparison, explanations, alone, rows);
   const auto singles = [&](auto visit) {
     for (std::size_t i = 0; i < explanations.size(); ++i) {
-      if (const Choice single = ranker.single(i); ranker.plausible_all(single)) {
+      if (const Choice single = ranker.single(i); ranker.all_of(single, is_plausible)) {
         visit(single);
       }
     }
@@ -134,7 +128,7 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
           continue;
         }
         if (const Choice pair = ranker.pair(i, j);
-            ranker.matters_all(pair) && ranker.plausible_all(pair)) {
+            ranker.all_of(pair, matters) && ranker.all_of(pair, is_plausible)) {
           visit(pair);
         }
       }
@@ -171,7 +165,7 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   ranking.best.worth = ranker.worth(ranking.best, ranking.dispersion);
   ranking.rival.worth = ranker.worth(ranking.rival, ranking.dispersion);
   ranking.margin = ranking.best.worth - ranking.rival.worth;
-  ranking.state = state_of(ranking, ranker.matters_all(ranking.best));
+  ranking.state = state_of(ranking, ranker.all_of(ranking.best, matters));
   return ranking;
 }
 
