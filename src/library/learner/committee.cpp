@@ -90,6 +90,9 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
                      const Plan& plan)
     : learner_(inputs, settings, terms),
       shares_(first_shares(plan.alone)),
+      seen_(kOnline.range.margin),
+      seen_terms_(plan.alone ? 0 : terms, SeenRange(kOnline.range.term_margin)),
+      term_ranges_(seen_terms_.size()),
       to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
@@ -106,6 +109,7 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
                     (inputs + terms) * sizeof(double);
   if (!plan.alone) {
     const std::size_t places = settings.places();
+    sum += terms * (sizeof(SeenRange) + sizeof(ValueRange));
     sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
            SvrFunction::bytes(inputs, terms, places);
     for (const SparseRegressionSettings& fit :
@@ -143,7 +147,7 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
     if (to_learn_.done()) {
       score(z, y);
     }
-    seen_.add(y);
+    see(z, y);
     learn_in(fits_->all(), z, y, true);
     relearn_slice();
   }
@@ -153,12 +157,26 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   return decision;
 }
 
+void Committee::see(std::span<const double> z, double y) {
+  seen_.add(y);
+  see_terms(z);
+}
+
+void Committee::see_terms(std::span<const double> z) {
+  const std::span<const double> terms = z.last(seen_terms_.size());
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    seen_terms_[k].add(terms[k]);
+    term_ranges_[k] = seen_terms_[k].range();
+  }
+}
+
 // By what every member said before it had learned the block that the sample is of.
 void Committee::score(std::span<const double> z, double y) {
-  const Limits seen = seen_.limits();
+  const auto [low, high] = seen_.range();
+  const ScaledSample moved = within_ranges(term_ranges_, z);
   std::array<double, kMembers> errors{};
   for (std::size_t k = 0; k < kMembers; ++k) {
-    errors[k] = std::abs(y - std::clamp(frozen_copies_[k](z), seen.low, seen.high));
+    errors[k] = std::abs(y - std::clamp(frozen_copies_[k](as_span(moved)), low, high));
   }
   shares_.score(errors);
 }
@@ -191,9 +209,11 @@ void Committee::reset_for_new_vehicle() {
 
 void Committee::relearn_buffer(int rounds) {
   seen_.clear();
+  std::ranges::for_each(seen_terms_, &SeenRange::clear);
   const SampleCollector& buffer = learner_.champion().buffer();
   for (std::size_t i = 0; i < buffer.size(); ++i) {
-    seen_.add(take_from_buffer(i));
+    const double y = take_from_buffer(i);
+    see(sample_, y);
   }
   to_learn_.begin(buffer, rounds);
   kernels_only_ = false;
@@ -257,8 +277,23 @@ void Committee::resume_from(const FunctionMix& said, const PastModel::Completion
     shares[k] = share;
   }
   shares_.resume_from(shares);
-  seen_.resume_from(said.limits);
+  seen_.resume_from({said.limits.low, said.limits.high});
+  for (std::size_t k = 0; k < said.term_ranges.size(); ++k) {
+    term_ranges_[k] = said.term_ranges[k];
+    seen_terms_[k].resume_from(term_ranges_[k]);
+  }
+  if (said.term_ranges.empty()) {  // of an earlier version
+    see_buffer_terms();
+  }
   freeze_copies();
+}
+
+void Committee::see_buffer_terms() {
+  const SampleStore& samples = learner_.champion().buffer().samples();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.get(i, sample_);
+    see_terms(sample_);
+  }
 }
 
 // The centres of a function, then the learner's samples.
@@ -283,14 +318,17 @@ double Committee::predict(std::span<const double> z) const {
   WeightedFunctions room;
   return alone() || !learner_.champion().ready()
              ? learner_.predict(z)
-             : kelpie::mixed_value(weighted_functions(room), limits(), z);
+             : kelpie::mixed_value(weighted_functions(room), limits(),
+                                   as_span(within_ranges(term_ranges_, z)));
 }
 
 // What the learner's fine part adds to the weighted mean.
-double Committee::short_range_part(std::span<const double> z) const {
-  const auto bounded = [seen = seen_.limits()](double said) {
+double Committee::short_range_part(std::span<const double> x) const {
+  const auto bounded = [seen = seen_.range()](double said) {
     return std::clamp(said, seen.low, seen.high);
   };
+  const ScaledSample moved = within_ranges(term_ranges_, x);
+  const std::span<const double> z = as_span(moved);
   const SvrFunction& model = learner_.model();
   return learner_.champion().ready()
              ? shares_.shares()[0] * (bounded(model(z)) - bounded(model.without_short_range(z)))
@@ -299,7 +337,10 @@ double Committee::short_range_part(std::span<const double> z) const {
 
 double Committee::with_gradient(std::span<const double> z, std::span<double> gradient) const {
   WeightedFunctions room;
-  return mixed_value_with_gradient(weighted_functions(room), limits(), z, gradient);
+  const double value = mixed_value_with_gradient(weighted_functions(room), limits(),
+                                                 as_span(within_ranges(term_ranges_, z)), gradient);
+  flatten_beyond(term_ranges_, z, gradient);
+  return value;
 }
 
 std::vector<MemberShare> Committee::members() const {
@@ -312,6 +353,7 @@ std::vector<MemberShare> Committee::members() const {
 
 void Committee::refresh(FunctionMix& copies) const {
   copies.limits = limits();
+  copies.term_ranges = term_ranges_;
   for (std::size_t k = 0; k < copies.members.size(); ++k) {
     copies.members[k].share = shares_.shares()[k];
     copies.members[k].function.assign(function(k));
@@ -319,7 +361,7 @@ void Committee::refresh(FunctionMix& copies) const {
 }
 
 FunctionMix Committee::function_mix() const {
-  FunctionMix copies{.members = {}, .limits = limits()};
+  FunctionMix copies{.members = {}, .limits = limits(), .term_ranges = term_ranges_};
   for (std::size_t k = 0; k < shares_.shares().size(); ++k) {
     copies.members.push_back({std::string(kNames[k]), shares_.shares()[k], function(k)});
   }
@@ -361,6 +403,10 @@ void Committee::rescale_fits(const SampleMap& map) {
   const SampleCollector& buffer = learner_.champion().buffer();
   const auto factors = std::span<const double>(sample_).subspan(buffer.kernel().inputs());
   seen_.rescale(gain, offset);
+  for (std::size_t k = 0; k < seen_terms_.size(); ++k) {
+    seen_terms_[k].rescale(factors[k], 0.0);
+    term_ranges_[k] = seen_terms_[k].range();
+  }
   const auto all = fits_->all();
   const std::span<SparseRegression* const> fits(all);
   std::ranges::for_each(fits.first(Fits::kWithKernels), &SparseRegression::clear);
@@ -410,9 +456,10 @@ Limits Committee::limits() const {
   using Task = AdaptiveSvr::SliceTask;
   const bool relearning = !to_learn_.done();
   const bool outgrown = learner_.task() == Task::rescale || learner_.task() == Task::catch_up;
-  Limits limits = seen_.limits();
-  limits.caution = alone() || relearning || outgrown ? 0.0 : kOnline.members.caution;
-  return limits;
+  const auto [low, high] = seen_.range();
+  return {.low = low,
+          .high = high,
+          .caution = alone() || relearning || outgrown ? 0.0 : kOnline.members.caution};
 }
 
 const SvrFunction& Committee::function(std::size_t member) const {
@@ -437,6 +484,10 @@ void Committee::visit(Archive& archive) {
   archive.flag(kernels_only_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
+  for (std::size_t k = 0; k < seen_terms_.size(); ++k) {
+    archive.part("seen term", seen_terms_[k]);
+    term_ranges_[k] = seen_terms_[k].range();
+  }
 }
 
 LearnerState state_of(const Committee& committee) {

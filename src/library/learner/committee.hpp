@@ -19,8 +19,9 @@ namespace kelpie {
 struct LearnerState;
 
 /// The models of one axis, on scaled samples, combined into a weighted mean. Every member learns
-/// every sample. MemberShares weights the members by their prediction errors, and SeenRange limits
-/// the value of each to the range of the targets seen.
+/// every sample. MemberShares weights the members by their prediction errors. SeenRange limits the
+/// value of each member to the range of the targets seen, and every physics term to twice the range
+/// of the term seen.
 ///
 ///     learner   the paper's learner with the settings given: AdaptiveSvr
 ///     precise   kernel least squares over all samples since the start, for logs with little
@@ -145,6 +146,9 @@ class Committee final : public OnlineRegressor {
 
   bool alone() const { return !fits_; }
   Limits limits() const;
+  void see(std::span<const double> z, double y);
+  void see_terms(std::span<const double> z);
+  void see_buffer_terms();
   const SvrFunction& function(std::size_t member) const;
   std::span<const WeightedFunction> weighted_functions(WeightedFunctions& room) const;
   double short_range_part(std::span<const double> z) const;
@@ -164,11 +168,13 @@ class Committee final : public OnlineRegressor {
   std::optional<Fits> fits_;                ///< empty: the learner is alone
   std::vector<SvrFunction> frozen_copies_;  ///< every member's model at the start of the block
   MemberShares shares_;
-  SeenRange seen_;
-  Relearning to_learn_;         ///< the buffer's samples that the fits have still to relearn
-  bool kernels_only_ = false;   ///< these fits are `precise` and `memory`
-  std::vector<double> sample_;  ///< scratch
-  Budget budget_;               ///< of every update
+  SeenRange seen_;                     ///< targets
+  std::vector<SeenRange> seen_terms_;  ///< none where the learner is alone
+  std::vector<ValueRange> term_ranges_;     ///< of seen_terms_
+  Relearning to_learn_;                ///< the buffer's samples that the fits have still to relearn
+  bool kernels_only_ = false;          ///< these fits are `precise` and `memory`
+  std::vector<double> sample_;         ///< scratch
+  Budget budget_;                      ///< of every update
 };
 
 }  // namespace kelpie

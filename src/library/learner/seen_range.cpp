@@ -27,7 +27,7 @@ void SeenRange::add(double y) {
   ++count_;
 }
 
-Limits SeenRange::limits() const {
+ValueRange SeenRange::range() const {
   if (count_ == 0) {
     return {};
   }
@@ -35,17 +35,16 @@ Limits SeenRange::limits() const {
     return {.low = least_.front() - kOnline.range.early_margin,
             .high = greatest_.front() + kOnline.range.early_margin};
   }
-  const double margin = kOnline.range.margin * (greatest_.back() - least_.back());
+  const double margin = margin_ * (greatest_.back() - least_.back());
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};
 }
 
-void SeenRange::resume_from(const Limits& limits) {
+void SeenRange::resume_from(const ValueRange& range) {
   clear();
-  if (std::isfinite(limits.high - limits.low)) {
-    const double margin =
-        kOnline.range.margin / (1.0 + 2.0 * kOnline.range.margin) * (limits.high - limits.low);
-    least_.fill(limits.low + margin);
-    greatest_.fill(limits.high - margin);
+  if (std::isfinite(range.high - range.low)) {
+    const double margin = margin_ / (1.0 + 2.0 * margin_) * (range.high - range.low);
+    least_.fill(range.low + margin);
+    greatest_.fill(range.high - margin);
     count_ = kLeast;
   }
 }

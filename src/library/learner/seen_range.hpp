@@ -9,23 +9,25 @@
 
 namespace kelpie {
 
-/// The range of the seen targets, the limits of predictions: from the third smallest to the third
-/// largest target, against outliers, with a margin of a tenth of its width on either side. Before
-/// kLeast targets: from the smallest to the largest, with a margin of a standard deviation.
-/// Allocates nothing.
+/// The range of the seen values of a target or physics term: from the third smallest to the third
+/// largest value, against outliers, with a margin on either side. Before kLeast values: from the
+/// smallest to the largest, with a margin of a standard deviation. Allocates nothing.
 class SeenRange {
  public:
+  /// `margin`: on either side, relative to the width of the range.
+  explicit SeenRange(double margin) : margin_(margin) {}
+
   void add(double y);  ///< Requires no NaN.
 
-  Limits limits() const;  ///< Infinite before the first target.
+  ValueRange range() const;  ///< Infinite before the first value.
 
-  /// Restores limits; infinite limits: as clear().
-  void resume_from(const Limits& limits);
+  /// Restores a range; an infinite range: as clear().
+  void resume_from(const ValueRange& range);
 
-  /// Targets y become gain · y + offset. Requires gain > 0.
+  /// Values y become gain · y + offset. Requires gain > 0.
   void rescale(double gain, double offset);
 
-  void clear() { *this = {}; }  ///< Forgets the targets.
+  void clear() { count_ = 0; }  ///< Forgets the values.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -33,6 +35,7 @@ class SeenRange {
   static constexpr std::size_t kEnds = 3;
   static constexpr std::size_t kLeast = 20;
 
+  double margin_;
   std::array<double, kEnds> least_{};     ///< ascending
   std::array<double, kEnds> greatest_{};  ///< descending
   std::size_t count_ = 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kNumbersOfSlot = 2;     // the publication, and the words in use
 constexpr std::size_t kNumbersOnce = 4;       // shift, members, support vectors, places
 constexpr std::size_t kNumbersOfMember = 7;   // beside the coefficients
-constexpr std::size_t kNumbersOfTarget = 6;   // beside mean and whitening
+constexpr std::size_t kNumbersOfTarget = 6;   // beside mean, whitening and terms
 constexpr std::size_t kNumbersOfKnown = 4;    // per target
 constexpr std::size_t kWordsOfCacheLine = 8;  // 64 bytes
 constexpr std::size_t kLatest = 3;            // its place in the header
@@ -147,6 +147,11 @@ void put_targets(std::span<const Snapshot> snapshots, NumberWriter& out) {
       for (std::size_t column = 0; column < input.whitening.columns(); ++column) {
         out.put(input.whitening(row, column));
       }
+    }
+    for (std::size_t k = 0; k < term_scale.size(); ++k) {
+      const auto [low, high] = axis.function.term_range(k);
+      out.put(low * term_scale[k]);
+      out.put(high * term_scale[k]);
     }
   }
 }
@@ -288,7 +293,7 @@ BlockLayout BlockLayout::of(std::span<const std::string> input_names,
 std::size_t BlockLayout::slot_words() const {
   const std::size_t numbers = kNumbersOfSlot + kNumbersOnce +
                               inputs * (2 + Actuator::fields().size()) +
-                              targets * (kNumbersOfTarget + inputs + inputs * inputs) +
+                              targets * (kNumbersOfTarget + inputs + inputs * inputs + 2 * terms) +
                               members * (kNumbersOfMember + terms) + vectors * (inputs + 1) +
                               (places > 0 ? targets * kNumbersOfKnown + places * (inputs + 1) : 0);
   return (numbers + kWordsOfCacheLine - 1) / kWordsOfCacheLine * kWordsOfCacheLine;

@@ -176,6 +176,15 @@ bool has(const JsonNode& node, const char* key) {
   return node.json().contains(key) && !node.json()[key].is_null();
 }
 
+ValueRange read_range(const JsonNode& node) {
+  if (node.json().is_null()) {
+    return {};
+  }
+  const std::vector<double> ends = node.numbers(2);
+  node.require(ends[0] <= ends[1], "has to go up");
+  return {ends[0], ends[1]};
+}
+
 FunctionMix read_mix(const JsonNode& node, std::size_t inputs, std::size_t terms) {
   FunctionMix mix;
   double total = 0.0;
@@ -187,14 +196,17 @@ FunctionMix read_mix(const JsonNode& node, std::size_t inputs, std::size_t terms
         {member["name"].text(), share, read_function(member, inputs, terms, false)});
   }
   node["members"].require(std::abs(total - 1.0) < 1e-9, "needs shares that add up to 1");
-  if (!node["bounds"].json().is_null()) {
-    const std::vector<double> ends = node["bounds"].numbers(2);
-    node["bounds"].require(ends[0] <= ends[1], "has to go up");
-    mix.limits = {ends[0], ends[1]};
-  }
+  const ValueRange bounds = read_range(node["bounds"]);
+  mix.limits = {bounds.low, bounds.high};
   if (has(node, "caution")) {
     mix.limits.caution = node["caution"].number();
     node["caution"].require(mix.limits.caution >= 0.0, "has to be 0 or more");
+  }
+  if (has(node, "term_ranges") && !node["term_ranges"].json().empty()) {
+    for (const JsonNode& range : node["term_ranges"].items()) {
+      mix.term_ranges.push_back(read_range(range));
+    }
+    node["term_ranges"].require(mix.term_ranges.size() == terms, "needs a range per physics term");
   }
   return mix;
 }

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "core/eigen.hpp"
 #include "core/vector.hpp"
-#include "kelpie/core/scaling.hpp"
 
 namespace kelpie {
 namespace {
@@ -137,12 +137,35 @@ double mixed_value_with_gradient(std::span<const WeightedFunction> functions, co
   return value_and_gradient(functions, limits, x, gradient);
 }
 
+ScaledSample within_ranges(std::span<const ValueRange> ranges, std::span<const double> x) {
+  ScaledSample moved(x.size());
+  std::ranges::copy(x, moved.begin());
+  const std::size_t first = x.size() - ranges.size();
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    moved[first + k] = std::clamp(moved[first + k], ranges[k].low, ranges[k].high);
+  }
+  return moved;
+}
+
+void flatten_beyond(std::span<const ValueRange> ranges, std::span<const double> x,
+                    std::span<double> gradient) {
+  const std::size_t first = x.size() - ranges.size();
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    if (x[first + k] < ranges[k].low || x[first + k] > ranges[k].high) {
+      gradient[first + k] = 0.0;
+    }
+  }
+}
+
 double FunctionMix::operator()(std::span<const double> x) const {
-  return value_of(members, limits, x);
+  return value_of(members, limits, as_span(within_ranges(term_ranges, x)));
 }
 
 double FunctionMix::with_gradient(std::span<const double> x, std::span<double> gradient) const {
-  return value_and_gradient(members, limits, x, gradient);
+  const double value =
+      value_and_gradient(members, limits, as_span(within_ranges(term_ranges, x)), gradient);
+  flatten_beyond(term_ranges, x, gradient);
+  return value;
 }
 
 double FunctionMix::term_weight(std::size_t k) const {

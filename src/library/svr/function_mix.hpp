@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/core/scaling.hpp"
 #include "svr/svr_function.hpp"
 
 namespace kelpie {
@@ -16,6 +17,22 @@ struct Limits {
   double high = std::numeric_limits<double>::infinity();
   double caution = 0.0;  ///< κ >= 0: weight of the functions' disagreement
 };
+
+/// A range of values of a target or physics term, in the learner's scale.
+struct ValueRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+/// The sample with every physics term moved into its range: functions are linear in the terms, and
+/// beyond the samples a line through squares and products is a guess. Terms are the last
+/// ranges.size() numbers of x. Requires x.size() <= kMostInputs + kMostTerms. Allocates nothing.
+ScaledSample within_ranges(std::span<const ValueRange> ranges, std::span<const double> x);
+
+/// Sets the slopes of terms beyond their ranges to 0 in a gradient by z and φ at
+/// within_ranges(ranges, x).
+void flatten_beyond(std::span<const ValueRange> ranges, std::span<const double> x,
+                    std::span<double> gradient);
 
 /// A function and its weight in a weighted mean.
 struct WeightedFunction {
@@ -44,7 +61,7 @@ double mixed_value(std::span<const WeightedFunction> functions, const Limits& li
 double mixed_value_with_gradient(std::span<const WeightedFunction> functions, const Limits& limits,
                                  std::span<const double> x, std::span<double> gradient);
 
-/// A weighted mean of functions, with copies of the functions.
+/// A weighted mean of functions, with copies of the functions, of terms within their ranges.
 struct FunctionMix {
   /// A function with name and weight.
   struct Member {
@@ -55,12 +72,18 @@ struct FunctionMix {
 
   std::vector<Member> members;
   Limits limits{};
+  std::vector<ValueRange> term_ranges{};  ///< one per physics term; empty: unlimited
 
-  double operator()(std::span<const double> x) const;  ///< mixed_value()
-  /// mixed_value_with_gradient()
+  double operator()(std::span<const double> x) const;  ///< mixed_value(within_ranges())
+  /// mixed_value_with_gradient(); beyond the range of a term the slope by the term is 0.
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
-  /// The weight of a physics term inside the limits: Σ share_k w_k.
+  /// The range of a physics term.
+  ValueRange term_range(std::size_t k) const {
+    return term_ranges.empty() ? ValueRange{} : term_ranges[k];
+  }
+
+  /// The weight of a physics term inside limits and range: Σ share_k w_k.
   double term_weight(std::size_t k) const;
 };
 

@@ -427,10 +427,17 @@ class ModelCode {
     for (std::size_t i = 0; i < input.whitening.rows(); ++i) {
       rows += (i > 0 ? ",\n    " : "") + text_.list(input.whitening.row(i));
     }
-    return fmt::format("  {{ {}, {}, {}, {}, {}, {},\n   {},\n   {{{}}} }},\n", first,
+    std::string ranges;
+    for (std::size_t k = 0; k < term_scale.size(); ++k) {
+      const auto [low, high] = axis.function.term_range(k);
+      ranges += fmt::format("{}{{{}, {}}}", k > 0 ? ", " : "", text_.bound(low * term_scale[k]),
+                            text_.bound(high * term_scale[k]));
+    }
+    return fmt::format("  {{ {}, {}, {}, {}, {}, {},\n   {},\n   {{{}}}{} }},\n", first,
                        first + axis.function.members.size(), text_.bound(target.invert(limits.low)),
                        text_.bound(target.invert(limits.high)), text_.number(limits.caution),
-                       text_.number(target.scale * target.scale), text_.list(input.mean), rows);
+                       text_.number(target.scale * target.scale), text_.list(input.mean), rows,
+                       ranges.empty() ? "" : ",\n   {" + ranges + "}");
   }
 
   std::string member_entry(const AxisScaling& scaling, const FunctionMix::Member& member,
@@ -482,7 +489,7 @@ std::size_t table_bytes(const TrainedModel& model, const CodeOptions& options) {
   bytes +=
       model.alignment.actuators.size() * (sizeof(std::int32_t) + Actuator::fields().size() * real);
   for (const TrainedModel::Axis& axis : model.axes) {
-    bytes += kIntegers + (2 + inputs + inputs * inputs) * real;
+    bytes += kIntegers + (4 + inputs + inputs * inputs + 2 * model.terms.size()) * real;
     for (const FunctionMix::Member& member : axis.function.members) {
       bytes += kIntegers + (5 + model.terms.size()) * real;
       bytes += member.function.beta().size() * (inputs + 1) * real;

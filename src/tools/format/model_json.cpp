@@ -72,6 +72,10 @@ Json member_json(const FunctionMix::Member& member) {
           {"support_vectors", rows_json(member.function.support_vectors())}};
 }
 
+Json range_json(const ValueRange& range) {
+  return std::isfinite(range.low) ? Json{range.low, range.high} : Json(nullptr);
+}
+
 Json axis_json(const TrainedModel::Axis& axis) {
   const Limits& limits = axis.function.limits;
   return {{"target", axis.name},
@@ -80,8 +84,9 @@ Json axis_json(const TrainedModel::Axis& axis) {
           {"kkt_gap", axis.kkt_gap},
           {"half_width", file::number(axis.half_width)},
           {"known", axis.known ? known_json(*axis.known) : Json(nullptr)},
-          {"bounds", std::isfinite(limits.low) ? Json{limits.low, limits.high} : Json(nullptr)},
+          {"bounds", range_json({limits.low, limits.high})},
           {"caution", limits.caution},
+          {"term_ranges", file::list(axis.function.term_ranges, range_json)},
           {"members", file::list(axis.function.members, member_json)}};
 }
 

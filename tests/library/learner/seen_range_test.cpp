@@ -12,29 +12,29 @@ namespace {
 
 TEST(SeenRange, IsThatOfTheTargetsAndATenthOfItsWidth) {
   RandomStream random(1, "seen");
-  SeenRange seen;
-  EXPECT_TRUE(std::isinf(seen.limits().high));
+  SeenRange seen(0.1);
+  EXPECT_TRUE(std::isinf(seen.range().high));
   for (int i = 0; i < 1000; ++i) {
     seen.add(random.uniform(-1.0, 3.0));
   }
-  EXPECT_NEAR(seen.limits().low, -1.4, 0.05);
-  EXPECT_NEAR(seen.limits().high, 3.4, 0.05);
+  EXPECT_NEAR(seen.range().low, -1.4, 0.05);
+  EXPECT_NEAR(seen.range().high, 3.4, 0.05);
 }
 
 // A model of the first few samples may say anything elsewhere.
 TEST(SeenRange, BoundsFromTheFirstTargetOn) {
-  SeenRange seen;
+  SeenRange seen(0.1);
   seen.add(0.3);
-  EXPECT_DOUBLE_EQ(seen.limits().low, -0.7);
+  EXPECT_DOUBLE_EQ(seen.range().low, -0.7);
   seen.add(0.8);
-  EXPECT_DOUBLE_EQ(seen.limits().low, -0.7);
-  EXPECT_DOUBLE_EQ(seen.limits().high, 1.8);
+  EXPECT_DOUBLE_EQ(seen.range().low, -0.7);
+  EXPECT_DOUBLE_EQ(seen.range().high, 1.8);
 }
 
 TEST(SeenRange, TwoAbsurdTargetsDoNotMoveIt) {
   RandomStream random(1, "seen");
-  SeenRange clean;
-  SeenRange struck;
+  SeenRange clean(0.1);
+  SeenRange struck(0.1);
   for (int i = 0; i < 1000; ++i) {
     const double y = random.uniform(-1.0, 3.0);
     clean.add(y);
@@ -44,8 +44,19 @@ TEST(SeenRange, TwoAbsurdTargetsDoNotMoveIt) {
       struck.add(-1e30);
     }
   }
-  EXPECT_NEAR(struck.limits().low, clean.limits().low, 0.1);
-  EXPECT_NEAR(struck.limits().high, clean.limits().high, 0.1);
+  EXPECT_NEAR(struck.range().low, clean.range().low, 0.1);
+  EXPECT_NEAR(struck.range().high, clean.range().high, 0.1);
+}
+
+TEST(SeenRange, ARestoredRangeIsTheSameAndGrows) {
+  SeenRange seen(0.5);
+  seen.resume_from({.low = -3.0, .high = 5.0});
+  EXPECT_DOUBLE_EQ(seen.range().low, -3.0);
+  EXPECT_DOUBLE_EQ(seen.range().high, 5.0);
+  for (int i = 0; i < 3; ++i) {
+    seen.add(4.0);
+  }
+  EXPECT_DOUBLE_EQ(seen.range().high, 4.0 + 0.5 * 5.0);
 }
 
 }  // namespace

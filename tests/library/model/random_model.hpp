@@ -125,6 +125,10 @@ inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) 
       mix.members.push_back(
           {share > 0.5 ? "learner" : "line", share, random_function(random, shape, terms)});
     }
+    for (std::size_t k = 0; k < terms; ++k) {
+      mix.term_ranges.push_back(
+          {.low = -random.uniform(0.1, 1.0), .high = random.uniform(0.1, 1.0)});
+    }
     model.axes.push_back({target, random_scaling(random, shape, terms), std::move(mix), 1e-4, {}});
   }
   return model;

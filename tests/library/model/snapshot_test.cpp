@@ -32,7 +32,7 @@ using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 // What one member says, by the formulas of docs/reference/files.md.
 Slopes by_formula(const SvrFunction& function, const std::array<Slopes, 3>& z,
-                  const std::array<Slopes, 3>& raw, const std::vector<double>& term_scale) {
+                  const std::vector<Slopes>& terms) {
   const KernelWeights& weights = function.kernel().weights();
   Slopes sum(function.bias(), Eigen::Vector3d::Zero());
   for (std::size_t n = 0; n < function.beta().size(); ++n) {
@@ -45,13 +45,24 @@ Slopes by_formula(const SvrFunction& function, const std::array<Slopes, 3>& z,
     const Slopes wide = exponent * 32.0;
     sum += function.beta()[n] * (weights.s * exp(exponent) + weights.fine * exp(wide));
   }
-  if (!term_scale.empty()) {
-    const std::vector<Slopes> terms = testing::every_function(raw[0], raw[1], raw[2]);
-    for (std::size_t k = 0; k < terms.size(); ++k) {
-      sum += function.term_weights()[k] / term_scale[k] * terms[k];
-    }
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    sum += function.term_weights()[k] * terms[k];
   }
   return sum;
+}
+
+// Scaled, and within their ranges.
+std::vector<Slopes> terms_of(const TrainedModel::Axis& axis, const std::array<Slopes, 3>& raw) {
+  const std::vector<double>& term_scale = axis.scaling.term_scale;
+  std::vector<Slopes> terms;
+  for (std::size_t k = 0; k < term_scale.size(); ++k) {
+    const auto [low, high] = axis.function.term_ranges[k];
+    const Slopes free = testing::every_function(raw[0], raw[1], raw[2])[k] / term_scale[k];
+    const bool inside = free.value() > low && free.value() < high;
+    terms.push_back(inside ? free
+                           : Slopes(std::clamp(free.value(), low, high), Eigen::Vector3d::Zero()));
+  }
+  return terms;
 }
 
 // Value and gradient of an axis by the formula of reference/files.md, from what the model
@@ -96,9 +107,10 @@ Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::v
     }
   }
   const Limits& limits = axis.function.limits;
+  const std::vector<Slopes> terms = terms_of(axis, raw);
   std::vector<Slopes> values;
   for (const auto& [name, share, function] : axis.function.members) {
-    const Slopes free = by_formula(function, z, raw, axis.scaling.term_scale);
+    const Slopes free = by_formula(function, z, terms);
     const bool inside = free.value() > limits.low && free.value() < limits.high;
     values.push_back(inside ? free
                             : Slopes(std::clamp(free.value(), limits.low, limits.high),

@@ -102,5 +102,20 @@ TEST(FunctionMix, TheGradientIsThatOfFiniteDifferencesInsideAndBeyondTheLimits) 
   }
 }
 
+// A square through the samples says nothing of places far away.
+TEST(FunctionMix, BeyondItsRangeATermStaysAndHasNoSlope) {
+  FunctionMix mix = three(0.0);
+  const std::array edge{0.3, -0.8, 1.2};
+  const std::array beyond{0.3, -0.8, 40.0};
+  const double at_edge = mix(edge);
+  mix.term_ranges = {{.low = -1.0, .high = 1.2}};
+  EXPECT_DOUBLE_EQ(mix(edge), at_edge);
+  EXPECT_DOUBLE_EQ(mix(beyond), at_edge);
+  std::array<double, 3> gradient{};
+  EXPECT_NEAR(mix.with_gradient(beyond, gradient), at_edge, 1e-12);
+  EXPECT_EQ(gradient[2], 0.0);
+  EXPECT_NE(gradient[0], 0.0);
+}
+
 }  // namespace
 }  // namespace kelpie::function_mix_test
