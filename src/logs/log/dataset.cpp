@@ -459,11 +459,7 @@ std::size_t Dataset::require_input(const std::string& name, const std::string& n
 }
 
 std::size_t Dataset::require_input_of(std::string_view option, const std::string& name) const {
-  const std::optional<std::size_t> found = find_input(name);
-  if (!found) {
-    throw InputError(option, unknown_name(name, "input", input_names));
-  }
-  return *found;
+  return require_name(option, name, "input", input_names);
 }
 
 }  // namespace kelpie::log

@@ -101,9 +101,7 @@ std::vector<EngineFile> wanted_files(const std::vector<std::string>& engines) {
     known.emplace_back(one.engine);
   }
   for (const std::string& engine : engines) {
-    if (std::ranges::find(known, engine) == known.end()) {
-      throw InputError("--for", unknown_name(engine, "simulator", known));
-    }
+    require_name("--for", engine, "simulator", known);
   }
   std::vector<EngineFile> wanted;
   std::ranges::copy_if(kEngineFiles, std::back_inserter(wanted), [&](const EngineFile& one) {

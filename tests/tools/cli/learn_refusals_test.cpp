@@ -58,7 +58,8 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --set epsilon=-1", "--set: epsilon: -1 is out of range");
   expect_refused("log.csv --set gama=1", "--set: gama: unknown setting (did you mean 'gamma'?)");
   expect_refused("log.csv --set gamma", "'gamma' is not of the form key=value");
-  expect_refused("log.csv --set forget=lifo", "'lifo' is not one of fifo, paper, age");
+  expect_refused("log.csv --set forget=lifo",
+                 "'lifo' is no choice (did you mean 'fifo'?); there are fifo, paper, age");
   expect_refused("log.csv --split half",
                  "split: there is no 'half'; choose random, blocks, pieces, tail");
   expect_refused("log.csv --rate 3 --time t", "--time");
