@@ -168,8 +168,8 @@ void convert_units(Table& table, const std::map<std::string, std::string>& units
 inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
 
 /// The column of the time of a table's rows as they are: the given one; without a column and a rate
-/// the first named in kTimeNames, or else the first column of time stamps; "" for none. A draft asks
-/// more names (time_field()).
+/// the first named in kTimeNames, or else the first column of time stamps; "" for none. A draft
+/// asks more names (time_field()).
 std::string usual_time(const Table& table, const Roles& given);
 
 /// Guesses roles from the names: targets are "Xdot", "dX" and "X_dot" for a column X other than
