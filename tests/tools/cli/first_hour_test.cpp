@@ -183,6 +183,11 @@ phases = [{ configuration = "nominal", duration_s = 700.0 },
   double share = 0.0;
   cells >> share;
   EXPECT_NEAR(share, 100.0, 10.0) << outcome.out.substr(row, 60);
+  const nlohmann::json result = parsed("out/result.json");
+  const nlohmann::json& cause = result["diagnosis"]["findings"].back()["causes"][0];
+  EXPECT_NEAR(cause["size"], 1.0, 0.1);
+  EXPECT_NEAR(cause["before"], 0.0, 0.02);
+  EXPECT_NE(outcome.out.find(" % of its nominal thrust again ("), std::string::npos) << outcome.out;
 }
 
 // D9: identify tells nothing of pulses rather than NaN.
