@@ -11,6 +11,7 @@
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "file/content.hpp"
 #include "lab/json_table.hpp"
 #include "study/metrics.hpp"
 #include "study/summary.hpp"
@@ -214,7 +215,7 @@ chart::TextTable kernel_table(const Json& kernel) {
 }
 
 chart::TextTable memory_table(const Json& memory) {
-  const auto bytes = [](double value) { return chart::megabytes(static_cast<std::size_t>(value)); };
+  const auto bytes = [](double value) { return file::megabytes(static_cast<std::size_t>(value)); };
   return json_table(fmt::format("Memory of a learner, computed: window {}, {} inputs",
                                 memory["window"].get<int>(), memory["inputs"].get<int>()),
                     {column("path", "/path", bytes), column("path, float", "/path_float", bytes),

@@ -242,9 +242,7 @@ std::vector<Mishap> wanted_mishaps(const std::vector<std::string>& names) {
     }
   }
   for (const std::string& name : names) {
-    if (std::ranges::find(known, name) == known.end()) {
-      throw InputError("--mishap", unknown_name(name, "mishap", known));
-    }
+    require_name("--mishap", name, "mishap", known);
   }
   return wanted;
 }

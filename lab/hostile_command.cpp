@@ -287,11 +287,7 @@ std::vector<HostileKind> chosen_kinds(const std::vector<std::string>& names) {
   std::ranges::transform(all, std::back_inserter(known), &HostileKind::name);
   std::vector<HostileKind> chosen;
   for (const std::string& name : names) {
-    const auto kind = std::ranges::find(all, name, &HostileKind::name);
-    if (kind == all.end()) {
-      throw InputError("--kinds", unknown_name(name, "kind", known));
-    }
-    chosen.push_back(*kind);
+    chosen.push_back(all[require_name("--kinds", name, "kind", known)]);
   }
   return chosen;
 }

@@ -88,8 +88,6 @@ def draw_control(data):
         place.axvline(data["settle_s"] + data["before_s"], color="gray", linewidth=0.8)
         finish(place, f"{case['path']}, {case['mishap']} (simulation, seed {data['first_seed']})",
                "time [s]", "distance to the reference [m]")
-    for place in axes[1:len(data["cases"])]:  # the first has room for the legend of all
-        place.get_legend().remove()
     return figure
 
 

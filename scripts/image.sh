@@ -17,13 +17,16 @@ source=$(realpath "$(dirname "$0")/..")
 [ -e "$out" ] && { echo "$out: exists; name a new folder" >&2; exit 2; }
 architecture=$(dpkg-deb --field "$deb" Architecture)
 version=$(dpkg-deb --field "$deb" Version)
-stage=$(mktemp -d)
+stage=$(mktemp -d -p /tmp)
 trap 'rm -rf "$stage"' EXIT
+cp "$deb" "$stage/"
 
+# Nothing of this machine stays: the package's place is below /tmp, and a container has its own names.
 mmdebstrap --quiet --mode=root --variant=apt --architectures="$architecture" \
   --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
-  --include="$deb" \
-  --customize-hook='rm -rf "$1"/var/lib/apt/lists/* "$1"/var/cache/apt/*' \
+  --include="$stage/$(basename "$deb")" \
+  --customize-hook='rm -rf "$1"/tmp/* "$1"/var/lib/apt/lists/* "$1"/var/cache/apt/*' \
+  --customize-hook='rm -f "$1"/etc/hostname "$1"/etc/resolv.conf' \
   --customize-hook="install -D -m 755 '$source/scripts/image_start.sh' \"\$1/usr/bin/kelpie-start\"" \
   bookworm "$stage/root"
 

@@ -144,7 +144,7 @@ kelpie_status kelpie_load(const unsigned char* bytes, size_t size, kelpie_model*
 
 /** A possible cause of a change, with one number as its size. */
 typedef enum kelpie_cause_kind {
-  KELPIE_THRUSTER = 0,     /**< loss of thrust; size: remaining share of the thrust, 1: unchanged */
+  KELPIE_THRUSTER = 0,     /**< loss of thrust; size: share of the nominal thrust, 1: unchanged */
   KELPIE_DRAG = 1,         /**< damping of a target; size: factor on the damping */
   KELPIE_LOAD = 2,         /**< carried or dropped; size: factor on the inertia along x */
   KELPIE_FORCE = 3,        /**< constant in the body; size: acceleration of a target, in its unit */

@@ -48,14 +48,26 @@ py::list cause_list(std::span<const Cause> causes, const DiagnosisNames& names) 
   return list;
 }
 
+// Causes of a finding, with the share of a thruster before the change.
+py::list changed_list(const Finding& finding, const DiagnosisNames& names) {
+  py::list list;
+  for (std::size_t i = 0; i < finding.count; ++i) {
+    py::dict cause = cause_dict(finding.causes[i], names);
+    if (finding.causes[i].kind == CauseKind::thruster) {
+      cause["before"] = finding.before[i];
+    }
+    list.append(cause);
+  }
+  return list;
+}
+
 py::dict finding_dict(const Finding& finding, const DiagnosisNames& names) {
   using namespace py::literals;  // NOLINT(google-build-using-namespace): as above
-  const std::span<const Cause> causes(finding.causes);
   const bool judged = finding.state != FindingState::looking;
   return py::dict("since_s"_a = finding.since_s, "found_s"_a = finding.found_s,
                   "told_s"_a = finding.told_s, "state"_a = state_name(finding.state),
                   "settled"_a = finding.settled, "text"_a = finding_text(finding, names),
-                  "causes"_a = cause_list(causes.first(judged ? finding.count : 0), names),
+                  "causes"_a = judged ? changed_list(finding, names) : py::list(),
                   "margin"_a = finding.margin, "explained"_a = finding.explained);
 }
 

@@ -37,6 +37,7 @@ def test_the_weak_thruster_is_named():
     assert abs(finding["since_s"] - 500.0) < 10.0
     assert finding["causes"][0]["column"] == "starboard"
     assert finding["causes"][0]["lower"] < 0.51 and finding["causes"][0]["upper"] > 0.49
+    assert finding["causes"][0]["before"] == 1.0
     assert finding["text"].startswith("starboard gives")
 
 

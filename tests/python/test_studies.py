@@ -134,7 +134,7 @@ def test_a_vehicle_is_identified(command, tmp_path):
 
 def test_mistakes_are_told_as_by_the_command(table, tmp_path):
     for options, message in (({"splt": "tail"}, r"no option --splt \(did you mean '--split'"),
-                             ({"split": "tial"}, "there is no 'tial'"),
+                             ({"split": "tial"}, "'tial' is no split"),
                              ({"settings": {"buffr": 3}}, "did you mean 'buffer'"),
                              ({"settings": {"buffer": object()}}, "neither a number nor a text"),
                              ({"rate": "4 Hz"}, "--rate")):

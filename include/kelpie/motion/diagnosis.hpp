@@ -17,7 +17,7 @@ namespace kelpie {
 
 /// A possible cause of a change of the vehicle, with one number as its size.
 enum class CauseKind : std::uint8_t {
-  thruster,      ///< loss of thrust; size: remaining share of the thrust, 1 = unchanged
+  thruster,      ///< loss of thrust; size: remaining share of the nominal thrust, 1 = all
   drag,          ///< damping of an axis; size: factor on the damping
   load,          ///< carried or dropped; size: factor on the inertia along the first axis
   force,         ///< constant in the body; size: acceleration of an axis, in the target's unit
@@ -56,10 +56,11 @@ struct Finding {
   bool settled = false;         ///< the explanation is final; the changed vehicle is the reference
   std::size_t count = 0;        ///< number of causes: 1 or 2; 0 without a name
   std::array<Cause, 2> causes;  ///< the first `count` are valid
-  Cause rival;                  ///< the second-best explanation
-  double evidence = 0.0;        ///< log likelihood ratio of the explanation against no change
-  double margin = 0.0;          ///< log likelihood ratio against `rival`
-  double explained = 0.0;       ///< share of the gain of an unrestricted refit, 0 to 1
+  std::array<double, 2> before{1.0, 1.0};  ///< size of a thruster's cause before the change; else 1
+  Cause rival;                             ///< the second-best explanation
+  double evidence = 0.0;   ///< log likelihood ratio of the explanation against no change
+  double margin = 0.0;     ///< log likelihood ratio against `rival`
+  double explained = 0.0;  ///< share of the gain of an unrestricted refit, 0 to 1
 };
 
 /// Detects changes of a vehicle and names their causes. Fossen's equations of motion are fitted by
@@ -235,8 +236,10 @@ class Authority {
   double held_current_ = 0.0;
 };
 
-/// The text of a finding: its causes joined by "and"; for an ambiguous change both candidates and
-/// the manoeuvres that separate them; or the statement that no known cause explains the change.
+/// The text of a finding: its causes joined by "and", a thruster that had changed before with its
+/// share before, "th2 gives 100 % of its nominal thrust again (99 to 101 %; before 0 %)"; for an
+/// ambiguous change both candidates and the manoeuvres that separate them; or the statement that no
+/// known cause explains the change.
 std::string finding_text(const Finding& finding, const DiagnosisNames& names);
 
 }  // namespace kelpie

@@ -33,13 +33,7 @@ double number_setting(std::string_view name, std::string_view text) {
 int choice_setting(std::string_view name, std::string_view text,
                    std::span<const std::string_view> choices) {
   const std::vector<std::string> names(choices.begin(), choices.end());
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (trimmed(text) == names[i]) {
-      return static_cast<int>(i);
-    }
-  }
-  throw InputError(field(name), "'" + std::string(text) + "' is not one of " +
-                                    join_text(names, ", ") + did_you_mean(text, names));
+  return static_cast<int>(require_name(name, trimmed(text), "choice", names));
 }
 
 std::string Range::text() const {

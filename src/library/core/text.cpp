@@ -7,6 +7,8 @@
 #include <charconv>
 #include <numeric>
 
+#include "kelpie/core/error.hpp"
+
 namespace kelpie {
 namespace {
 
@@ -87,6 +89,15 @@ std::string unknown_name(std::string_view name, std::string_view kind,
   std::string text = "'" + std::string(name) + "' is no " + std::string(kind);
   text += did_you_mean(name, known);
   return known.empty() ? text : text + "; there are " + join_text(known, ", ");
+}
+
+std::size_t require_name(std::string_view field, std::string_view name, std::string_view kind,
+                         std::span<const std::string> known) {
+  const auto found = std::ranges::find(known, name);
+  if (found == known.end()) {
+    throw InputError(field, unknown_name(name, kind, known));
+  }
+  return static_cast<std::size_t>(found - known.begin());
 }
 
 bool parse_number(std::string_view text, double& value) {

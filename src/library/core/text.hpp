@@ -28,6 +28,11 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
 std::string unknown_name(std::string_view name, std::string_view kind,
                          std::span<const std::string> known);
 
+/// The place of `name` among the known names. Throws InputError of `field` with unknown_name() on
+/// another name.
+std::size_t require_name(std::string_view field, std::string_view name, std::string_view kind,
+                         std::span<const std::string> known);
+
 /// The whole of `text` as a number. Returns false on other text ("1.5x", "", "1 2");
 /// accepts "nan", "inf" and a leading '+', whatever the locale.
 bool parse_number(std::string_view text, double& value);

@@ -297,8 +297,9 @@ ChangeStart& ChangeMonitor::start_before(double since_s) {
 std::optional<std::size_t> ChangeMonitor::command_of(const Cause& cause) const {
   const auto found = std::ranges::find(gains_, cause.place, &CommandGain::input);
   const auto command = static_cast<std::size_t>(found - gains_.begin());
-  const bool follows =
-      cause.kind == CauseKind::thruster && found != gains_.end() && scales_[command];
+  const bool follows = cause.kind == CauseKind::thruster &&
+                       std::abs(cause.size) <= kChange.most_gain && found != gains_.end() &&
+                       scales_[command];
   return follows ? std::optional(command) : std::nullopt;
 }
 

@@ -64,11 +64,11 @@ class ChangeMonitor {
   /// times that do not decrease.
   Event update(std::span<const double> x, std::span<const double> y, double t);
 
-  /// Believes at once that a diagnosis has named a thruster with another effect since `since_s`
-  /// [s]. The change is on probation as any other, and rows go on refining its size. Ensures:
-  /// `none` and nothing done for other causes, for a command that is no factor of its terms, while
-  /// a change is followed, for a change that was followed before, and while usual errors are not
-  /// known.
+  /// Believes at once that a diagnosis has named a thruster, with a factor on its effect as size,
+  /// since `since_s` [s]. The change is on probation as any other, and rows go on refining its
+  /// size. Ensures: `none` and nothing done for other causes, for a command that is no factor of
+  /// its terms, while a change is followed, for a change that was followed before, and while usual
+  /// errors are not known.
   Event believe_cause(const Cause& cause, double since_s);
 
   double since() const { return since_s_; }  ///< Start of the last change [s].

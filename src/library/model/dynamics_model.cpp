@@ -214,7 +214,9 @@ void DynamicsModel::Parts::believe_diagnosis() {
   }
   named_since_s = last.since_s;
   if (last.count == 1) {
-    apply_change(change->believe_cause(last.causes.front(), last.since_s));
+    Cause cause = last.causes.front();
+    cause.size /= last.before.front();
+    apply_change(change->believe_cause(cause, last.since_s));
   }
 }
 

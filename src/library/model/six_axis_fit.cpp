@@ -274,8 +274,7 @@ SixAxisFit Search::collected() const {
   fit.curve = windows_.curve;
   fit.windows = static_cast<std::size_t>(weak_.terms.rows());
   fit.window_s = 2.0 * windows_.shape.half_s;
-  fit.misfit = std::max(1.0, best_.distance / std::max(errors_.expected_distance,
-                                                       std::numeric_limits<double>::min()));
+  fit.misfit = misfit_of(best_, errors_);
   const std::vector<std::string> names = names_of(rows_.thrusters);
   const Eigen::Index terms = place_of(structure_.terms().size());
   fit.free_terms = Matrix(static_cast<std::size_t>(terms), kSixAxes);

@@ -75,10 +75,11 @@ Eigen::MatrixXd curve_terms(const SixAxisRows& rows, const SixAxisWindows& windo
 }
 
 EquationRows equation_of(const SixAxisRows& rows, Eigen::MatrixXd terms) {
-  return {.times_s = rows.times_s,
-          .starts = rows.starts,
-          .velocities = Eigen::Map<const RowMajor>(rows.velocities.data(), terms.rows(), 6),
-          .terms = std::move(terms)};
+  return {
+      .times_s = rows.times_s,
+      .starts = rows.starts,
+      .velocities = Eigen::Map<const RowMajor>(rows.velocities.data(), place_of(rows.rows()), 6),
+      .terms = std::move(terms)};
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ CoefficientMonitor::CoefficientMonitor(std::size_t inputs, std::span<const std::
       starts_(kBlocks),
       window_(kWindows.size()),
       usual_(kWindows.size() * (explanations_.list().size() + 1), 1.0),
+      expected_thrust_(terms_.size() * states.size()),
+      thrust_(expected_thrust_.size()),
       directions_(explanations_.columns() * terms_.size() * states.size()),
       health_columns_(explanations_.health_columns()) {
   health_.reserve(terms_.commands().size());
@@ -65,7 +67,7 @@ bool CoefficientMonitor::step() {
   }
   if (window_ == 0) {
     fit_.fit(reference_);
-    explanations_.directions(terms_, fit_.theta(), directions_);
+    find_directions();
     window_sums_.clear();
     ++watched_;
     alarm_ = 0;
@@ -81,6 +83,18 @@ bool CoefficientMonitor::step() {
     update_health();
   }
   return window_ == kWindows.size() && alarm_ > 0;
+}
+
+void CoefficientMonitor::find_directions() {
+  for (std::size_t i = 0; i < thrust_.size(); ++i) {
+    thrust_[i] = expected_thrust_[i] != 0.0 ? expected_thrust_[i] : fit_.theta()[i];
+  }
+  explanations_.directions(terms_, fit_.theta(), thrust_, directions_);
+}
+
+void CoefficientMonitor::expect_thrust(std::span<const double> thrust) {
+  std::ranges::copy(thrust, expected_thrust_.begin());
+  find_directions();
 }
 
 void CoefficientMonitor::add_newest(std::size_t from, std::size_t to) {
@@ -161,7 +175,7 @@ CoefficientMonitor::Cut CoefficientMonitor::cut(std::size_t guard, NormalEquatio
     absorb_oldest();
   }
   fit_.fit(reference_);
-  explanations_.directions(terms_, fit_.theta(), directions_);
+  find_directions();
   for (std::size_t i = guard; i < kept_; ++i) {
     after.add(blocks_[(first_ + i) % kBlocks]);
   }
@@ -206,7 +220,7 @@ void CoefficientMonitor::visit(Archive& archive) {
   archive.list(health_, terms_.commands().size(),
                [&](Cause& cause) { visit_cause(archive, cause); });
   if (archive.loading()) {
-    explanations_.directions(terms_, fit_.theta(), directions_);
+    find_directions();
   }
 }
 

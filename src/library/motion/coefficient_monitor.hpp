@@ -60,6 +60,10 @@ class CoefficientMonitor {
   /// weight of the reference times `kept`, and `rows` of the changed vehicle.
   void accept_change(std::span<const double> delta, double kept, const NormalEquations& rows);
 
+  /// Coefficients (terms × axes) in place of those of the reference, where not 0, for the
+  /// directions of thrusters: a dead thruster has no direction in the reference. Allocates nothing.
+  void expect_thrust(std::span<const double> thrust);
+
   const std::vector<Cause>& health() const { return health_; }  ///< Diagnosis::health()
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -69,6 +73,7 @@ class CoefficientMonitor {
   void add_newest(std::size_t from, std::size_t to);
   void test_window(std::size_t window);
   void update_health();
+  void find_directions();
   std::size_t sharpest_cut();
 
   MotionTerms terms_;
@@ -84,6 +89,7 @@ class CoefficientMonitor {
   double alarm_excess_ = 0.0;  // evidence of this window above its threshold
   std::size_t watched_ = 0;    // number of tested blocks
   std::vector<double> usual_;  // windows × (explanations + refit): scatter without a change
+  std::vector<double> expected_thrust_, thrust_;  // of expect_thrust(); of the directions
   std::vector<double> directions_;
   std::vector<std::size_t> health_columns_;
   std::vector<Cause> health_;

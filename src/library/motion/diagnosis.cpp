@@ -12,6 +12,7 @@
 #include "motion/cause_ranking.hpp"
 #include "motion/coefficient_monitor.hpp"
 #include "motion/standstill.hpp"
+#include "motion/thrust_shares.hpp"
 #include "motion/tuning.hpp"
 
 namespace kelpie {
@@ -33,8 +34,20 @@ void visit_finding(Archive& archive, Finding& finding) {
   }
 }
 
-Cause unchanged(std::size_t thruster) {
-  return {.kind = CauseKind::thruster, .place = thruster, .size = 1.0, .lower = 1.0, .upper = 1.0};
+// Of an archive, which has no shares from before a change.
+void derive_before(std::span<Finding> findings) {
+  std::vector<double> shares(kMostInputs, 1.0);
+  for (Finding& finding : findings) {
+    for (std::size_t i = 0; i < finding.count; ++i) {
+      const Cause& cause = finding.causes[i];
+      if (cause.kind == CauseKind::thruster) {
+        finding.before[i] = shares[cause.place];
+        if (finding.state == FindingState::named) {
+          shares[cause.place] = cause.size;
+        }
+      }
+    }
+  }
 }
 
 // φ(x) − φ(0).
@@ -59,7 +72,7 @@ class Diagnosis::State {
   const std::vector<Finding>& findings() const { return findings_; }
   std::size_t found() const { return found_; }
   const CoefficientMonitor& monitor() const { return monitor_; }
-  const std::vector<Cause>& present() const { return present_; }
+  const std::vector<Cause>& present() const { return shares_.present(); }
   std::span<const std::size_t> states() const { return monitor_.terms().velocities(); }
   std::span<const std::size_t> body_axes() const { return body_axes_; }
   std::size_t inputs() const { return inputs_; }
@@ -72,16 +85,13 @@ class Diagnosis::State {
   bool is_outlier(std::span<const double> y);
   void close_block(double t);
   void start_finding(double t);
-  void update_present(const CauseRanking& ranking);
-  double changed_share(std::size_t input) const;
-  std::span<const double> nominal_theta() const;
-  bool moves_thrust() const;
   std::span<const double> theta_now() const;
   Eigen::MatrixXd coefficients(bool nominal) const;
   void inspect(double t);
   void report(Finding& finding, const CauseRanking& ranking, double t) const;
   Agreement alone(std::size_t explanation);
   void finish(const CauseRanking& ranking);
+  void accept(std::span<const double> delta, double kept);
   void set_delta(const Choice& choice);
   void report_frozen(double t);
   Finding& add_finding(double since, double t);
@@ -101,9 +111,7 @@ class Diagnosis::State {
   std::size_t found_ = 0;
   std::size_t inputs_;
   std::vector<std::size_t> body_axes_;
-  std::vector<Cause> present_;   // share of each thruster against the nominal vehicle
-  std::vector<Cause> settled_;   // the same before the change under inspection
-  std::vector<double> nominal_;  // coefficients before thrust first changed; empty: it has not
+  ThrustShares shares_;
   ReferenceFit accepted_;        // coefficients of the reference since the last settled change
   std::size_t accepted_at_ = 0;  // number of fits then; 0: no settled change
 };
@@ -121,13 +129,9 @@ Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& stat
       alone_(monitor_.explanations().list().size()),
       inputs_(inputs),
       body_axes_(std::move(body_axes)),
+      shares_(monitor_.terms(), states.size()),
       accepted_(monitor_.terms().size(), states.size()) {
   findings_.reserve(kMostFindings);
-  nominal_.reserve(delta_.size());
-  for (const std::size_t command : monitor_.terms().commands()) {
-    present_.push_back(unchanged(command));
-  }
-  settled_ = present_;
 }
 
 void Diagnosis::State::update(std::span<const double> x, std::span<const double> y, double t) {
@@ -203,7 +207,7 @@ void Diagnosis::State::report_frozen(double t) {
   finding.explained = 1.0;
   finding.causes[0] = {CauseKind::frozen, standstill_.input(which), value, value, value};
   looking_ = false;
-  present_ = settled_;
+  shares_.follow({});
   block_.clear();
   guard_ = kDiagnosis.guard_blocks;
 }
@@ -249,8 +253,10 @@ void Diagnosis::State::inspect(double t) {
       rank_causes(monitor_.comparison(), monitor_.explanations().list(), alone_, after_.rows(),
                   monitor_.usual_scatter(), delta_.size());
   if (inspected_ >= kDiagnosis.first_blocks) {
-    report(findings_.back(), ranking, t);
-    update_present(ranking);
+    Finding& finding = findings_.back();
+    report(finding, ranking, t);
+    const bool is_named = finding.state == FindingState::named;
+    shares_.follow(std::span(finding.causes).first(is_named ? finding.count : 0));
   }
   const bool chance =
       ranking.state == FindingState::looking && inspected_ >= kDiagnosis.chance_blocks;
@@ -288,8 +294,9 @@ void Diagnosis::State::report(Finding& finding, const CauseRanking& ranking, dou
     const double size = choice.agreement.size[column];
     const double scatter = std::sqrt(ranking.dispersion) * choice.agreement.error[column];
     const double left_out = (added ? kDiagnosis.added_discrepancy : kDiagnosis.discrepancy) * size;
-    return monitor_.explanations().cause(explanation, size,
-                                         kNormal90 * std::hypot(scatter, left_out));
+    return shares_.against_nominal(
+        monitor_.explanations().cause(explanation, size, kNormal90 * std::hypot(scatter, left_out)),
+        monitor_);
   };
   if (finding.state != ranking.state) {
     finding.state = ranking.state;
@@ -300,6 +307,10 @@ void Diagnosis::State::report(Finding& finding, const CauseRanking& ranking, dou
   if (pair) {
     finding.causes[1] =
         cause(best, best.other, monitor_.explanations().list()[best.one].columns.size());
+  }
+  for (std::size_t i = 0; i < finding.count; ++i) {
+    const Cause& told = finding.causes[i];
+    finding.before[i] = told.kind == CauseKind::thruster ? shares_.settled(told.place) : 1.0;
   }
   finding.rival = cause(ranking.rival, ranking.rival.one, 0);
   finding.evidence = best.agreement.evidence / ranking.dispersion;
@@ -315,84 +326,27 @@ void Diagnosis::State::finish(const CauseRanking& ranking) {
   if (ranking.state == FindingState::looking) {
     findings_.pop_back();
     --found_;
-    present_ = settled_;
+    shares_.follow({});
     monitor_.accept_change({}, 1.0, after_);
     return;
   }
   findings_.back().settled = true;
-  settled_ = present_;
-  const bool is_named = ranking.state == FindingState::named;
-  if (is_named) {
+  if (ranking.state == FindingState::named) {
     set_delta(ranking.best);
-  }
-  if (nominal_.empty() && (!is_named || moves_thrust())) {
-    nominal_.assign(monitor_.fit().theta().begin(), monitor_.fit().theta().end());
-  }
-  if (is_named) {
-    monitor_.accept_change(delta_, kDiagnosis.kept_named, after_);
+    accept(delta_, kDiagnosis.kept_named);
   } else {
-    monitor_.accept_change({}, kDiagnosis.kept_unnamed, after_);
+    accept({}, kDiagnosis.kept_unnamed);
   }
+}
+
+// The changed vehicle is the reference: as for CoefficientMonitor::accept_change().
+void Diagnosis::State::accept(std::span<const double> delta, double kept) {
+  shares_.settle(monitor_.terms(), monitor_.fit().theta(), delta);
+  monitor_.accept_change(delta, kept, after_);
+  shares_.dead_thrust(monitor_.terms(), delta_);
+  monitor_.expect_thrust(delta_);
   monitor_.fit_reference(accepted_);
   accepted_at_ = monitor_.watched();
-}
-
-// Of the thrusters that a named change concerns. What has no name changes no thrust: with little
-// excitation the refit of a change that isn't understood is far off.
-void Diagnosis::State::update_present(const CauseRanking& ranking) {
-  present_ = settled_;
-  if (ranking.state != FindingState::named) {
-    return;
-  }
-  set_delta(ranking.best);
-  const Finding& finding = findings_.back();
-  for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
-    const auto thruster = std::ranges::find(present_, cause.place, &Cause::place);
-    if (cause.kind == CauseKind::thruster && thruster != present_.end()) {
-      const double half = std::hypot(0.5 * (cause.upper - cause.lower) * thruster->size,
-                                     0.5 * (thruster->upper - thruster->lower) * cause.size);
-      thruster->size = changed_share(cause.place);
-      thruster->lower = thruster->size - half;
-      thruster->upper = thruster->size + half;
-    }
-  }
-}
-
-// Of a thruster after the change delta_ of the reference: the projection on the nominal thrust,
-// terms weighted by their size in the reference. Not the product of all sizes: a dead thruster that
-// comes back gives many times its last thrust.
-double Diagnosis::State::changed_share(std::size_t input) const {
-  const MotionTerms& terms = monitor_.terms();
-  const auto nominal = columns_of(nominal_theta(), terms.size());
-  const auto reference = columns_of(monitor_.fit().theta(), terms.size());
-  const auto delta = columns_of(std::span<const double>(delta_), terms.size());
-  const auto precision = columns_of(monitor_.fit().precision(), residual_.size());
-  const auto gram = monitor_.reference().gram();
-  double along = 0.0;
-  double square = 0.0;
-  for (Eigen::Index k = 0; k < nominal.rows(); ++k) {
-    for (Eigen::Index axis = 0;
-         terms[static_cast<std::size_t>(k)].depends_on(input) && axis < nominal.cols(); ++axis) {
-      const double weighted = gram(k, k) * precision(axis, axis) * nominal(k, axis);
-      along += weighted * (reference(k, axis) + delta(k, axis));
-      square += weighted * nominal(k, axis);
-    }
-  }
-  return square > 0.0 ? along / square : 1.0;
-}
-
-// Whether delta_ changes a coefficient of thrust.
-bool Diagnosis::State::moves_thrust() const {
-  const MotionTerms& terms = monitor_.terms();
-  const auto delta = columns_of(std::span<const double>(delta_), terms.size());
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    const bool is_thrust = std::ranges::any_of(
-        terms.commands(), [&](std::size_t input) { return terms[k].depends_on(input); });
-    if (is_thrust && !delta.row(static_cast<Eigen::Index>(k)).isZero(0.0)) {
-      return true;
-    }
-  }
-  return false;
 }
 
 // Until the next fit, a settled change is in the reference alone.
@@ -400,27 +354,10 @@ std::span<const double> Diagnosis::State::theta_now() const {
   return accepted_at_ == monitor_.watched() ? accepted_.theta() : monitor_.fit().theta();
 }
 
-std::span<const double> Diagnosis::State::nominal_theta() const {
-  return nominal_.empty() ? monitor_.fit().theta() : nominal_;
-}
-
-// Terms × axes: of the reference, but thrust is that of the nominal vehicle times its share.
 Eigen::MatrixXd Diagnosis::State::coefficients(bool nominal) const {
   const MotionTerms& terms = monitor_.terms();
-  const auto before = columns_of(nominal_theta(), terms.size());
-  if (nominal) {
-    return before;
-  }
-  Eigen::MatrixXd theta = columns_of(theta_now(), terms.size());
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    for (const Cause& thruster : present_) {
-      if (terms[k].depends_on(thruster.place)) {
-        const auto row = static_cast<Eigen::Index>(k);
-        theta.row(row) = thruster.size * before.row(row);
-      }
-    }
-  }
-  return theta;
+  return nominal ? Eigen::MatrixXd(columns_of(shares_.nominal(theta_now()), terms.size()))
+                 : shares_.coefficients(terms, theta_now());
 }
 
 // θᵀ(φ(x) − φ(0)).
@@ -437,7 +374,7 @@ void Diagnosis::State::half_widths(std::span<const double> x, std::span<double> 
   const Eigen::MatrixXd noise = columns_of(monitor_.fit().precision(), widths.size()).inverse();
   const Eigen::MatrixXd theta = coefficients(true);
   double share_width = 0.0;
-  for (const Cause& thruster : present_) {
+  for (const Cause& thruster : present()) {
     share_width += x[thruster.place] != 0.0 ? 0.5 * (thruster.upper - thruster.lower) : 0.0;
   }
   for (std::size_t i = 0; i < widths.size(); ++i) {
@@ -483,12 +420,12 @@ void Diagnosis::State::visit(Archive& archive) {
   archive.whole(found_);
   archive.list(findings_, kMostFindings,
                [&](Finding& finding) { visit_finding(archive, finding); });
-  for (std::vector<Cause>* const shares : {&present_, &settled_}) {
-    for (Cause& thruster : *shares) {
-      visit_cause(archive, thruster);
-    }
+  shares_.visit(archive);
+  if (archive.loading()) {
+    derive_before(findings_);
+    shares_.dead_thrust(monitor_.terms(), delta_);
+    monitor_.expect_thrust(delta_);
   }
-  archive.list(nominal_, delta_.size(), [&](double& number) { archive.number(number); });
   archive.part("accepted", accepted_);
   archive.whole(accepted_at_);
   archive.require(!looking_ || !findings_.empty(), "a change looked into that isn't there");

@@ -183,8 +183,9 @@ void Explanations::load_direction(const MotionTerms& terms, std::span<const doub
 }
 
 void Explanations::directions(const MotionTerms& terms, std::span<const double> theta,
-                              std::span<double> directions) const {
+                              std::span<const double> thrust, std::span<double> directions) const {
   const Coefficients coefficients = columns_of(theta, terms.size());
+  const Coefficients thrusts = columns_of(thrust, terms.size());
   std::ranges::fill(directions, 0.0);
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const std::span<double> place = directions.subspan(c * theta.size(), theta.size());
@@ -192,7 +193,7 @@ void Explanations::directions(const MotionTerms& terms, std::span<const double> 
     const std::size_t where = columns_[c].place;
     switch (columns_[c].kind) {
       case CauseKind::thruster:
-        thrust_direction(terms, coefficients, where, out);
+        thrust_direction(terms, thrusts, where, out);
         break;
       case CauseKind::drag:
         drag_direction(terms, coefficients, where, out);

@@ -36,10 +36,11 @@ class Explanations {
   /// The columns of all thrusters in their order, then of a force on each axis.
   std::vector<std::size_t> health_columns() const;
 
-  /// The directions D_c in the order of the columns, at the coefficients `theta` (terms × axes).
-  /// Requires room for columns() · theta.size() values. Allocates nothing.
+  /// The directions D_c in the order of the columns, at the coefficients `theta` (terms × axes); of
+  /// the thrusters, at the coefficients `thrust`. Requires room for columns() · theta.size()
+  /// values. Allocates nothing.
   void directions(const MotionTerms& terms, std::span<const double> theta,
-                  std::span<double> directions) const;
+                  std::span<const double> thrust, std::span<double> directions) const;
 
   /// For an explanation with a nonlinear effect (the scale of a sensor): the change at the size s
   /// and its derivative, both shaped like `theta`. Returns false, and writes nothing, otherwise.

@@ -59,6 +59,11 @@ Eigen::MatrixXd distance_metric(const FreeFit& fit, const Eigen::MatrixXd& mass)
 
 }  // namespace
 
+double misfit_of(const MinimumDistance& best, const SandwichErrors& errors) {
+  return std::max(
+      1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
+}
+
 FreeFit without_thrusters(const FreeFit& fit) {
   const Eigen::Index thrust = fit.gram.rows() - kTermThrusters;
   FreeFit vehicle{.coefficients = fit.coefficients.topRows(kTermThrusters),

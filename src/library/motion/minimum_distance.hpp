@@ -58,6 +58,9 @@ struct SandwichErrors {
 SandwichErrors sandwich(const FreeFit& fit, const EquationStructure& structure,
                         const MinimumDistance& best);
 
+/// The distance over its expectation, at least 1.
+double misfit_of(const MinimumDistance& best, const SandwichErrors& errors);
+
 /// The fit in the plane for masses, drags and constant forces alone, with free coefficients of the
 /// thrusters: convex for a given metric, 13 parameters.
 FreeFit without_thrusters(const FreeFit& fit);

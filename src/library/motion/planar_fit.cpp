@@ -121,11 +121,6 @@ Eigen::Vector3d force_sizes(const WeakRows& rows, const Eigen::VectorXd& paramet
       .cwiseMax(std::numeric_limits<double>::min());
 }
 
-double misfit_of(const MinimumDistance& best, const SandwichErrors& errors) {
-  return std::max(
-      1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
-}
-
 // What was never seen: a thruster counts as alike both ways.
 void complete(const Eigen::MatrixXd& gram, Eigen::VectorXd& parameters) {
   for (Eigen::Index term = kTermThrusters; term < gram.rows(); term += 2) {

@@ -46,17 +46,11 @@ PathPiece piece_of(const PoseRows& rows, const Eigen::VectorXd& greatest, std::s
   for (Index i = 0; i < thrusters; ++i) {
     piece.speeds.row(i) /= greatest(i);
   }
-  double last = std::numeric_limits<double>::quiet_NaN();
-  for (Index row = 0; row < count; ++row) {
-    double& heading = piece.poses(2, row);
-    heading = std::isfinite(last) ? last + wrapped(heading - last) : heading;
-    last = std::isfinite(heading) ? heading : last;
-  }
   return piece;
 }
 
-// The first row of each stretch without a gap or a hole in the headings, in which full turns would
-// be lost; then the number of rows.
+// The first row of each stretch without a gap or a hole in the headings, in which full turns are
+// lost; then the number of rows.
 std::vector<std::size_t> starts_with_holes(const PoseRows& rows) {
   std::vector<std::size_t> starts = rows.starts;
   double last_s = std::numeric_limits<double>::infinity();

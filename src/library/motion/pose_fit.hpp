@@ -14,7 +14,7 @@ namespace kelpie {
 struct PoseRows {
   std::vector<std::string> thrusters;
   std::vector<double> times_s;         ///< of each row, increasing within a stretch
-  std::vector<double> poses;           ///< rows × 3: x, y [m], heading [rad]; NaN: not measured
+  std::vector<double> poses;           ///< rows × 3: x, y [m], continuous heading [rad]; or NaN
   std::vector<double> speeds;          ///< rows × thrusters; thrust is proportional to n|n|
   std::vector<std::size_t> starts{0};  ///< first row of each stretch without a gap, increasing
 };
@@ -39,8 +39,8 @@ struct PoseRows {
 ///    tells m33.
 ///
 /// A constant current, and a shift of the speeds in time where ramps explain most, are estimated
-/// along and are not among the parameters. Headings may jump by full turns. PlanarFit::windows
-/// counts the pieces, `misfit` is the largest sum of autocorrelations, free_terms are empty.
+/// along and are not among the parameters. PlanarFit::windows counts the pieces, `misfit` is the
+/// largest sum of autocorrelations, free_terms are empty.
 ///
 /// Throws InputError naming the undetermined masses or thrusts if rows or excitation are
 /// insufficient. Cost: some 100 simulations of the rows with derivatives. Allocates. Deterministic.

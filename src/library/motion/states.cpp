@@ -94,11 +94,7 @@ std::vector<std::size_t> find_states(std::string_view specification,
     return states;
   }
   for (const std::string& name : split_text(wanted, ',')) {
-    const auto found = std::ranges::find(inputs, name);
-    if (found == inputs.end()) {
-      reject_states(unknown_name(name, "input", inputs));
-    }
-    states.push_back(static_cast<std::size_t>(found - inputs.begin()));
+    states.push_back(require_name("states", name, "input", inputs));
     if (std::ranges::count(states, states.back()) > 1) {
       reject_states("names '" + name + "' twice");
     }

@@ -45,6 +45,7 @@ inline constexpr struct DiagnosisTuning {
   double discrepancy = 0.004;
   double added_discrepancy = 0.0125;
   double most_inertia = 3.0;   ///< [ratio] of a load that comes, its inverse of a load that goes
+  double dead_share = 0.2;     ///< of thrust; below, the next change is no factor: by hand
   double kept_named = 0.5;     ///< weight of the reference after a named change
   double kept_unnamed = 0.02;  ///< weight after another change
 

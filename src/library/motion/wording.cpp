@@ -34,11 +34,21 @@ std::string sized(const Cause& cause) {
          text_of(cause.upper, digits) + ")";
 }
 
-std::string share_of_thrust(const Cause& cause) {
+// Of a thruster that had another share of its nominal thrust `before`; 1: all of it.
+std::string share_of_thrust(const Cause& cause, double before) {
   const int digits = 100.0 * (cause.upper - cause.lower) < 2.0 ? 1 : 0;
   const auto percent = [&](double share) { return text_of(100.0 * share, digits); };
-  return percent(cause.size) + " % of its thrust (" + percent(cause.lower) + " to " +
-         percent(cause.upper) + " %)";
+  const std::string interval = " (" + percent(cause.lower) + " to " + percent(cause.upper) + " %";
+  return before == 1.0 ? percent(cause.size) + " % of its thrust" + interval + ")"
+                       : percent(cause.size) + " % of its nominal thrust" +
+                             (cause.size > before ? " again" : "") + interval + "; before " +
+                             text_of(100.0 * std::abs(before), 0) + " %)";
+}
+
+std::string changed_text(const Cause& cause, double before, const DiagnosisNames& names) {
+  return cause.kind == CauseKind::thruster
+             ? cause_column(cause, names) + " gives " + share_of_thrust(cause, before)
+             : cause_text(cause, names);
 }
 
 // What excites a cause and leaves others alone.
@@ -84,7 +94,7 @@ std::string cause_text(const Cause& cause, const DiagnosisNames& names) {
   const std::string column = cause_column(cause, names);
   switch (cause.kind) {
     case CauseKind::thruster:
-      return column + " gives " + share_of_thrust(cause);
+      return column + " gives " + share_of_thrust(cause, 1.0);
     case CauseKind::drag:
       return "the drag in " + column + " is " + sized(cause) + " times what it was";
     case CauseKind::load:
@@ -111,15 +121,15 @@ std::string finding_text(const Finding& finding, const DiagnosisNames& names) {
              "explains " +
              text_of(100.0 * finding.explained, 0) + " % of it";
     case FindingState::ambiguous:
-      return cause_text(finding.causes[0], names) + ", or " + cause_text(finding.rival, names) +
-             ": not excited enough to tell them apart. Drive " +
+      return changed_text(finding.causes[0], finding.before[0], names) + ", or " +
+             cause_text(finding.rival, names) + ": not excited enough to tell them apart. Drive " +
              drive_for(finding.causes[0], names) + ", or " + drive_for(finding.rival, names);
     case FindingState::named:
       break;
   }
-  std::string text = cause_text(finding.causes[0], names);
+  std::string text = changed_text(finding.causes[0], finding.before[0], names);
   if (finding.count == 2) {
-    text += ", and " + cause_text(finding.causes[1], names);
+    text += ", and " + changed_text(finding.causes[1], finding.before[1], names);
   }
   return text;
 }

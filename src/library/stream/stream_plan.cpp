@@ -40,21 +40,16 @@ class NameCheck {
   }
 
   void require_sources(const std::string& user, std::span<const std::string> names) const {
-    require_known(user, names, sources_, "states and commands");
+    require_known(user, names, sources_, "state or command");
   }
   void require_columns(const std::string& user, std::span<const std::string> names) const {
-    require_known(user, names, names_, "states, commands and derivatives");
+    require_known(user, names, names_, "state, command or derivative");
   }
 
  private:
   static void require_known(const std::string& user, std::span<const std::string> names,
-                            const std::vector<std::string>& known, const std::string& kinds) {
-    for (const std::string& name : names) {
-      if (std::ranges::find(known, name) == known.end()) {
-        refuse(user, "'" + name + "' is none of the " + kinds + did_you_mean(name, known) + ": " +
-                         join_text(known, ", "));
-      }
-    }
+                            const std::vector<std::string>& known, const char* kind) {
+    std::ranges::for_each(names, [&](const auto& name) { require_name(user, name, kind, known); });
   }
 
   void add(const std::string& name) {

@@ -34,9 +34,7 @@ void require_names(const ParameterSettings& settings, const std::vector<std::str
   }
   study::wanted_places(nameless, settings.tell);
   for (const auto& [name, value] : settings.thrust) {
-    if (std::ranges::find(thrusters, name) == thrusters.end()) {
-      throw InputError("--thrust", unknown_name(name, "thruster", thrusters));
-    }
+    require_name("--thrust", name, "thruster", thrusters);
   }
 }
 

@@ -99,9 +99,11 @@ void PredictionScore::report(const DynamicsModel& model, LearnerHealth& health) 
     }
   }
   health.thrusters.clear();
-  if (model.diagnosis() != nullptr) {
-    for (const Cause& now : model.diagnosis()->health()) {
-      const Cause cause = study::since_the_start(now, model.diagnosis()->findings()).cause;
+  if (const Diagnosis* const diagnosis = model.diagnosis();
+      diagnosis != nullptr && diagnosis->knows_thrust()) {
+    for (const Cause& present : diagnosis->present()) {
+      const Cause cause =
+          study::since_the_start(present, diagnosis->health(), diagnosis->findings()).cause;
       health.thrusters.push_back({.name = inputs_[cause.place],
                                   .share = cause.size,
                                   .lower = cause.lower,

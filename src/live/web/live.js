@@ -177,7 +177,7 @@ const live = (() => {
     say(isPaused ? "❚❚ Learning is frozen: the model stays as it is"
       : health.alerts.some(({ key }) => key === "idle_s") ? "⚠ No messages come"
       : health.axes.every((axis) => axis.ready) ? "▶ Learning" : "▶ Learning; too few samples for a model so far",
-    `${count(health.learned)} samples learned, ${number(health.t, 6)} s`);
+    `${count(health.learned)} samples learned, ${number(health.t, 6)}\u00a0s`);
     const { run, axes, signals, thrusters, velocities, parameters } = plan.fields;
     const isGood = ({ key, place }) => (key === "r2" && place < 2) || key === "coverage";
     listed(at("good"), axes.filter(isGood), health.axes);

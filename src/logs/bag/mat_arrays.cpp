@@ -18,6 +18,7 @@
 #include "bag/child_process.hpp"
 #include "bag/mat_elements.hpp"
 #include "bag/tuning.hpp"
+#include "file/content.hpp"
 #include "file/mapped_file.hpp"
 #endif
 
@@ -339,7 +340,7 @@ class NewsReader {
 ChildLimits limits_for(const std::filesystem::path& file) {
   const auto size = static_cast<std::size_t>(std::filesystem::file_size(file));
   return {.bytes = kTuning.child_free_bytes + kTuning.child_ratio * size,
-          .seconds = kTuning.child_free_s + static_cast<int>(size >> 20U)};
+          .seconds = kTuning.child_free_s + static_cast<int>(size / 1'000'000)};
 }
 
 void read_in_child(const std::filesystem::path& file, const ChildProcess::Write& write) {
@@ -365,11 +366,11 @@ std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const L
     std::string text;
     MatArray array;
     if (!reader.next(kind, text) || (kind == News::array && !reader.next(array))) {
-      lose(
-          InputError({.file = file.string()},
-                     fmt::format("is damaged, or too large: behind {} arrays libmatio {}, with at "
-                                 "most {} MB and {} s",
-                                 arrays.size(), child.end(), limits.bytes >> 20U, limits.seconds)));
+      lose(InputError(
+          {.file = file.string()},
+          fmt::format("is damaged, or too large: behind {} arrays libmatio {}, with at "
+                      "most {} and {} s",
+                      arrays.size(), child.end(), file::megabytes(limits.bytes), limits.seconds)));
       break;
     }
     if (kind == News::array) {

@@ -9,20 +9,20 @@ namespace kelpie::bag {
 /// Behavioural constants of the room. "By hand" means: chosen by hand, no measurement recorded.
 inline constexpr struct Tuning {
   // Limits on memory and recursion, so that damaged and hostile files end in an error.
-  std::size_t most_fields = 20'000;          ///< of a message type; by hand
-  std::size_t deepest_type = 32;             ///< types within types; by hand
-  std::size_t deepest_struct = 16;           ///< MATLAB: structs within structs; by hand
-  std::size_t most_arrays = 20'000;          ///< MATLAB: arrays of a file; by hand
-  std::size_t most_elements = 1'000;         ///< MATLAB: structs or cells of an array; by hand
-  std::size_t longest_name = 200;            ///< MATLAB: bytes of a name; by hand
-  std::uint64_t most_numbers = 1ULL << 40U;  ///< MATLAB: numbers of an array; by hand
-  std::size_t child_free_bytes = std::size_t{256} << 20U;  ///< MATLAB: memory of a child; by hand
+  std::size_t most_fields = 20'000;            ///< of a message type; by hand
+  std::size_t deepest_type = 32;               ///< types within types; by hand
+  std::size_t deepest_struct = 16;             ///< MATLAB: structs within structs; by hand
+  std::size_t most_arrays = 20'000;            ///< MATLAB: arrays of a file; by hand
+  std::size_t most_elements = 1'000;           ///< MATLAB: structs or cells of an array; by hand
+  std::size_t longest_name = 200;              ///< MATLAB: bytes of a name; by hand
+  std::uint64_t most_numbers = 1ULL << 40U;    ///< MATLAB: numbers of an array; by hand
+  std::size_t child_free_bytes = 256'000'000;  ///< MATLAB: memory of a child; by hand
   std::size_t child_ratio = 64;         ///< MATLAB: … and more for each byte of the file; by hand
   int child_free_s = 8;                 ///< MATLAB: time of a child, and 1 s more per MB; by hand
   std::uint32_t longest_header = 1024;  ///< ROS 1: bytes of a record header behind damage; by hand
-  std::uint64_t free_bytes = 64ULL << 20U;  ///< unpacked size that is always accepted; by hand
-  std::uint64_t most_ratio = 256;           ///< unpacked to packed bytes beyond free_bytes; by hand
-  std::uint64_t free_messages = 100'000;    ///< of packed chunks, besides one per byte; by hand
+  std::uint64_t free_bytes = 64'000'000;  ///< unpacked size that is always accepted; by hand
+  std::uint64_t most_ratio = 256;         ///< unpacked to packed bytes beyond free_bytes; by hand
+  std::uint64_t free_messages = 100'000;  ///< of packed chunks, besides one per byte; by hand
 
   std::size_t recognised_by = 4096;  ///< bytes at the beginning that show the format; by hand
   int zstd_level = 3;                ///< zstd's own default

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <system_error>
@@ -132,7 +133,7 @@ std::string beginning_of(const fs::path& file, std::size_t most_bytes) {
 }
 
 std::string megabytes(std::size_t bytes) {
-  return std::to_string(bytes >> 20U) + " MB";
+  return fmt::format("{} MB", std::round(static_cast<double>(bytes) / 1e5) / 10.0);
 }
 
 }  // namespace kelpie::file

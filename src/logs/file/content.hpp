@@ -18,7 +18,7 @@ std::string read_content(const std::filesystem::path& file, const std::string& w
 /// pipe would consume the content.
 std::string beginning_of(const std::filesystem::path& file, std::size_t most_bytes);
 
-/// A size for people, in whole MB: "256 MB".
+/// A size in millions of bytes, to a tenth: "256 MB", "13.2 MB".
 std::string megabytes(std::size_t bytes);
 
 }  // namespace kelpie::file

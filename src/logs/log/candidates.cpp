@@ -186,43 +186,43 @@ std::string lower(std::string text) {
   return text;
 }
 
-// Of a topic's column as [log] has it; the path of a field, or of an element.
-CandidateColumn column_of(const bag::TopicReport& topic, const std::string& path) {
-  CandidateColumn column;
+CandidateColumn seen_column(const bag::TopicReport& topic, const std::string& path,
+                            const std::string& unit, const bag::FieldRange::Element& seen) {
+  if (seen.finite == 0) {
+    return {};
+  }
+  return {.name = topic.name.empty() ? path : topic.name + ":" + path,
+          .topic = topic.name,
+          .unit = unit,
+          .low = seen.low,
+          .high = seen.high,
+          .rate_hz = topic.rate_hz * static_cast<double>(seen.finite) /
+                     static_cast<double>(std::max<std::size_t>(topic.messages, 1)),
+          .stamps = topic.clock_offset};
+}
+
+// The path is of a field, or of an element.
+CandidateColumn column_at(const bag::TopicReport& topic, const std::string& path) {
   const std::size_t bracket = path.find('[');
   const bool is_element = bracket != std::string::npos && path.find(']') != bracket + 1;
   const std::string pattern =
       is_element ? path.substr(0, bracket) + "[]" + path.substr(path.find(']') + 1) : path;
   auto field = std::ranges::find(topic.fields, path, &bag::FieldRange::path);
-  bag::FieldRange::Element seen;
   if (field != topic.fields.end()) {
-    seen = {.low = field->low, .high = field->high, .finite = field->finite};
-  } else {
-    field = std::ranges::find(topic.fields, pattern, &bag::FieldRange::path);
-    const std::size_t element = is_element ? std::stoul(path.substr(bracket + 1)) : 0;
-    if (!is_element || field == topic.fields.end() || element >= field->elements.size()) {
-      return column;
-    }
-    seen = field->elements[element];
+    return column_of(topic, *field);
   }
-  if (seen.finite > 0) {
-    column = {.name = topic.name.empty() ? path : topic.name + ":" + path,
-              .topic = topic.name,
-              .unit = field->unit,
-              .low = seen.low,
-              .high = seen.high,
-              .rate_hz = topic.rate_hz * static_cast<double>(seen.finite) /
-                         static_cast<double>(std::max<std::size_t>(topic.messages, 1)),
-              .stamps = topic.clock_offset};
-  }
-  return column;
+  field = std::ranges::find(topic.fields, pattern, &bag::FieldRange::path);
+  const std::size_t element = is_element ? std::stoul(path.substr(bracket + 1)) : 0;
+  return is_element && field != topic.fields.end() && element < field->elements.size()
+             ? seen_column(topic, path, field->unit, field->elements[element])
+             : CandidateColumn{};
 }
 
 // Of a quotient of two fields, "way[0]/time".
 CandidateColumn quotient_of(const bag::TopicReport& topic, const std::string& path) {
   const std::size_t slash = path.find('/');
-  CandidateColumn column = column_of(topic, path.substr(0, slash));
-  const CandidateColumn over = column_of(topic, path.substr(slash + 1));
+  CandidateColumn column = column_at(topic, path.substr(0, slash));
+  const CandidateColumn over = column_at(topic, path.substr(slash + 1));
   if (!column.exists() || !over.exists() || over.low <= 0.0) {
     return {};
   }
@@ -297,7 +297,7 @@ class Finder {
       bool is_whole = true;
       for (const std::string& path : expanded(known.fields)) {
         CandidateColumn column =
-            path.find('/') == std::string::npos ? column_of(topic, path) : quotient_of(topic, path);
+            path.find('/') == std::string::npos ? column_at(topic, path) : quotient_of(topic, path);
         is_whole = is_whole && column.exists();
         if (known.part != Part::commands || column.exists()) {
           one.columns.push_back(std::move(column));
@@ -339,7 +339,7 @@ class Finder {
         if (axis && field.finite > 0 && field.elements.empty()) {
           const bool is_own = name != field.path;
           named.push_back({is_own ? topic->name.substr(0, topic->name.rfind('/') + 1) : topic->name,
-                           {*axis, column_of(*topic, field.path)}});
+                           {*axis, column_of(*topic, field)}});
         }
       }
     }
@@ -392,7 +392,7 @@ class Finder {
   static void add_command_columns(const bag::TopicReport& topic,
                                   std::vector<CandidateColumn>& columns) {
     for (const std::string& path : command_paths(topic)) {
-      if (CandidateColumn column = column_of(topic, path);
+      if (CandidateColumn column = column_at(topic, path);
           column.exists() && can_be_written(path)) {
         columns.push_back(std::move(column));
       }
@@ -421,6 +421,11 @@ bool can_be_written(std::string_view name) {
     i += 1 + more;
   }
   return true;
+}
+
+CandidateColumn column_of(const bag::TopicReport& topic, const bag::FieldRange& field) {
+  return seen_column(topic, field.path, field.unit,
+                     {.low = field.low, .high = field.high, .finite = field.finite});
 }
 
 std::vector<Candidate> find_candidates(const bag::BagReport& report) {

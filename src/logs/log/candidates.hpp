@@ -36,6 +36,9 @@ struct Candidate {
   std::string why;
 };
 
+/// A topic's field as [log] names a column; without a name where no value is finite.
+CandidateColumn column_of(const bag::TopicReport& topic, const bag::FieldRange& field);
+
 /// Finds the candidates of a log with the tables of known_roles, sorted by rank; of several
 /// instances of a message ("XKF1[0]", "XKF1[1]") only the first. Names with control characters or
 /// broken UTF-8 are skipped, because a configuration cannot hold such names.

@@ -253,19 +253,6 @@ const std::vector<double>& finite_column(const Table& table, const std::string& 
   return values;
 }
 
-std::string time_column(const Table& table, const Roles& roles) {
-  if (!roles.time.empty()) {
-    return roles.time;
-  }
-  for (const std::string_view name : kTimeNames) {
-    if (std::ranges::find(table.names, name) != table.names.end()) {
-      return std::string(name);
-    }
-  }
-  refuse(table, "time",
-         "there is no column t, time or stamp; name one with --time, or give --rate");
-}
-
 std::vector<double> row_times(const Table& table, const Roles& roles) {
   std::vector<double> times(table.rows());
   if (roles.rate_hz > 0.0) {
@@ -274,7 +261,11 @@ std::vector<double> row_times(const Table& table, const Roles& roles) {
     }
     return times;
   }
-  const std::string name = time_column(table, roles);
+  const std::string name = usual_time(table, roles);
+  if (name.empty()) {
+    refuse(table, "time",
+           "there is no column t, time or stamp; name one with --time, or give --rate");
+  }
   times = finite_column(table, name);
   const auto later = std::ranges::adjacent_find(times, [](double a, double b) { return b <= a; });
   if (later != times.end()) {
@@ -459,11 +450,7 @@ std::size_t Dataset::require_input(const std::string& name, const std::string& n
 }
 
 std::size_t Dataset::require_input_of(std::string_view option, const std::string& name) const {
-  const std::optional<std::size_t> found = find_input(name);
-  if (!found) {
-    throw InputError(option, unknown_name(name, "input", input_names));
-  }
-  return *found;
+  return require_name(option, name, "input", input_names);
 }
 
 }  // namespace kelpie::log

@@ -106,7 +106,8 @@ struct Dataset {
   std::string heading_column{};     ///< empty: none
   std::vector<double> headings{};   ///< of each row, as the log has them, perhaps NaN; or empty
   /// Where inputs are means over the window of a pose: rows × 3 of x, y [m] and heading [rad] at
-  /// the rows' own times (NaN: not measured), and the inputs there; else empty.
+  /// the rows' own times (NaN: not measured), and the inputs there, for LogSource::with_poses; else
+  /// empty. Headings are continuous.
   std::vector<double> poses{};
   std::vector<double> pose_inputs{};
   std::size_t rows_read = 0;          ///< rows of the log, including skipped rows
@@ -166,8 +167,9 @@ void convert_units(Table& table, const std::map<std::string, std::string>& units
 /// Names of columns that are taken as time.
 inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
 
-/// The column of the time of a table's rows: the given one; without a column and a rate the first
-/// of kTimeNames, or else the first column of time stamps; "" for none.
+/// The column of the time of a table's rows as they are: the given one; without a column and a rate
+/// the first named in kTimeNames, or else the first column of time stamps; "" for none. A draft
+/// asks more names (time_field()).
 std::string usual_time(const Table& table, const Roles& given);
 
 /// Guesses roles from the names: targets are "Xdot", "dX" and "X_dot" for a column X other than

@@ -381,15 +381,9 @@ class Planner {
     constexpr std::size_t kMost = 200;
     for (const bag::TopicReport& topic : report_.topics) {
       for (const bag::FieldRange& field : topic.fields) {
-        const CandidateColumn column{
-            .name = topic.name.empty() ? field.path : topic.name + ":" + field.path,
-            .topic = topic.name,
-            .unit = field.unit,
-            .low = field.low,
-            .high = field.high,
-            .rate_hz = topic.rate_hz};
-        if (field.finite > 0 && column.varies() && field.elements.empty() &&
-            can_be_written(column.name) && plan_.others.size() < kMost) {
+        const CandidateColumn column = column_of(topic, field);
+        if (column.varies() && field.elements.empty() && can_be_written(column.name) &&
+            plan_.others.size() < kMost) {
           plan_.others.push_back({{}, column.name, signal_why(column)});
         }
       }

@@ -58,7 +58,7 @@ DraftPlan plan_draft(const bag::BagReport& report, const std::string& time);
 std::string draft_text(const DraftPlan& plan, const std::string& log,
                        const std::string& definitions);
 
-/// The time column of a table, by name or by time stamps; or "".
+/// The time column of a table to be sampled, by any known name or by time stamps; or "".
 std::string time_field(const Table& table);
 
 }  // namespace kelpie::log

@@ -30,16 +30,7 @@ PoseColumns pose_of(const bag::TopicReport& topic) {
                                                 ? std::nullopt
                                                 : pose_part_by_name(field.path);
     if (part) {
-      parts.try_emplace(
-          *part,
-          CandidateColumn{.name = topic.name.empty() ? field.path : topic.name + ":" + field.path,
-                          .topic = topic.name,
-                          .unit = field.unit,
-                          .low = field.low,
-                          .high = field.high,
-                          .rate_hz = topic.rate_hz * static_cast<double>(field.finite) /
-                                     static_cast<double>(std::max<std::size_t>(topic.messages, 1)),
-                          .stamps = topic.clock_offset});
+      parts.try_emplace(*part, column_of(topic, field));
     }
   }
   const bool is_quaternion =

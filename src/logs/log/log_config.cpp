@@ -30,7 +30,7 @@ std::size_t choice(const file::TomlNode& value, const std::vector<std::string>& 
   const std::string text = value.text("one of " + join_text(words, ", "));
   const auto found = std::ranges::find(words, text);
   if (found == words.end()) {
-    value.refuse("'" + text + "' is none of " + join_text(words, ", ") + did_you_mean(text, words));
+    value.refuse(unknown_name(text, "choice", words));
   }
   return static_cast<std::size_t>(found - words.begin());
 }

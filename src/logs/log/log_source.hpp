@@ -14,6 +14,7 @@ struct LogSource {
   std::string path;
   std::string definitions{};  ///< folder of .msg files, for types without definition in the bag
   bag::ReadMode mode = bag::ReadMode::usual;  ///< treatment of damage in a recording
+  bool with_poses = false;                    ///< Dataset::poses are wanted
 
   /// Throws as bag::open_bag() does.
   std::unique_ptr<bag::MessageReader> open_bag(const bag::RowTimes& times = {}) const;

@@ -281,7 +281,8 @@ void restore_labels(const Roles& roles, Table& table) {
 
 Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogConfig& config,
                 const Roles& roles) {
-  const SamplingPlan plan = sampling_plan(config, roles);
+  SamplingPlan plan = sampling_plan(config, roles);
+  plan.with_instants = source.with_poses;
   const bag::RowTimes times = row_times(config, roles);
   if (is_of_bag && !times.time.empty() && !bag::may_lack_times(source.path)) {
     refuse(config.source, "log.time",

@@ -59,8 +59,10 @@ class Sampler {
     samples.report.lag_until_s = lag_until_s;
     report_on(streamed, samples.report);
     samples.table = table_of(streamed);
-    samples.instants = pose_instants(stream_plan_, signals_);
     count_rows(samples.table, samples.report);
+    if (plan_.with_instants) {
+      samples.instants = pose_instants(stream_plan_, std::move(signals_));
+    }
     return samples;
   }
 

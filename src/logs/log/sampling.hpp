@@ -21,6 +21,7 @@ struct SamplingPlan : StreamPlan {
   double lag_part =
       0.5;  ///< share of the rows used for the estimation of lags, from the beginning …
   std::size_t lag_rows = 1600;  ///< … but no more than so many
+  bool with_instants = false;   ///< Samples::instants are wanted
 };
 
 /// Result of sampling.
@@ -54,7 +55,7 @@ struct SamplingReport {
 /// A log at a common rate.
 struct Samples {
   Table table;       ///< columns t [s], sources, derived; NaN where something is silent
-  Table instants{};  ///< pose_instants()
+  Table instants{};  ///< pose_instants() where the plan wants these
   SamplingReport report;
 };
 

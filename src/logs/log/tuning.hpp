@@ -9,9 +9,9 @@ namespace kelpie::log {
 /// Behavioural constants of the room. "By hand" means: chosen by hand, no measurement recorded.
 inline constexpr struct Tuning {
   // Tables (docs/reference/limits.md).
-  std::size_t longest_line = std::size_t{1} << 20U;  ///< bytes; by hand
-  std::size_t most_columns = 10'000;                 ///< by hand
-  std::size_t most_words = 4'000'000;                ///< 40 bytes each in memory; by hand
+  std::size_t longest_line = 1'000'000;  ///< bytes; by hand
+  std::size_t most_columns = 10'000;     ///< by hand
+  std::size_t most_words = 4'000'000;    ///< 40 bytes each in memory; by hand
 
   // Sampling.
   double longest_silence_s = 30.0 * 86400.0;  ///< within a log; then a clock was set; by hand

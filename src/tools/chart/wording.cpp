@@ -220,8 +220,4 @@ std::string unit_text(std::string_view unit) {
   return below.empty() ? above : (above.empty() ? "1" : above) + "/" + under;
 }
 
-std::string megabytes(std::size_t bytes) {
-  return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
-}
-
 }  // namespace kelpie::chart

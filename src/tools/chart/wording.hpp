@@ -53,7 +53,4 @@ std::string list_text(const std::vector<std::string>& parts);
 /// A unit as people write it: "m/s²" for "m s^-2", "N·m·s" for "N m s"; other text as it is.
 std::string unit_text(std::string_view unit);
 
-/// "13.2 MB" (a million bytes each).
-std::string megabytes(std::size_t bytes);
-
 }  // namespace kelpie::chart

@@ -101,9 +101,7 @@ std::vector<EngineFile> wanted_files(const std::vector<std::string>& engines) {
     known.emplace_back(one.engine);
   }
   for (const std::string& engine : engines) {
-    if (std::ranges::find(known, engine) == known.end()) {
-      throw InputError("--for", unknown_name(engine, "simulator", known));
-    }
+    require_name("--for", engine, "simulator", known);
   }
   std::vector<EngineFile> wanted;
   std::ranges::copy_if(kEngineFiles, std::back_inserter(wanted), [&](const EngineFile& one) {
@@ -189,9 +187,10 @@ std::optional<Identified> on_six_axes(const IdentifyArguments& options,
 
 Identified in_plane(const IdentifyArguments& options, const study::KnownThrust& wish,
                     const Base& base) {
-  PlanOptions with_lags = options;
-  with_lags.with_lags = true;
-  const study::LearnPlan log = plan_log(with_lags).plan;
+  PlanOptions wanted = options;
+  wanted.with_lags = true;
+  wanted.log.source.with_poses = true;
+  const study::LearnPlan log = plan_log(wanted).plan;
   const study::PlanarColumns columns =
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
   Identified result{.found = study::identify(log.data, log.split, columns, wish, options.only),

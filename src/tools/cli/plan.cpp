@@ -79,11 +79,7 @@ study::ThrusterRange thruster_range(const DriveArguments& options,
   }
   for (const std::string& assignment : options.range) {
     const auto [name, text] = format::key_and_value(assignment, "--range");
-    const auto place = std::ranges::find(thrusters.names, name);
-    if (place == thrusters.names.end()) {
-      throw InputError("--range", unknown_name(name, "thruster", thrusters.names));
-    }
-    const auto at = static_cast<std::size_t>(place - thrusters.names.begin());
+    const std::size_t at = require_name("--range", name, "thruster", thrusters.names);
     const std::size_t colon = text.find(':');
     const double least = thrusters.from_log(at, number_in(text.substr(0, colon), assignment));
     const double most = thrusters.from_log(

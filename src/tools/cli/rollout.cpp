@@ -178,9 +178,7 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
   std::map<std::string, double> velocities;
   for (const std::string& assignment : options.start) {
     const auto [name, text] = format::key_and_value(assignment, "--start");
-    if (std::ranges::find(names, name) == names.end()) {
-      throw InputError("--start", unknown_name(name, "velocity of the model", names));
-    }
+    require_name("--start", name, "velocity of the model", names);
     if (!parse_number(text, velocities[name]) || !std::isfinite(velocities[name])) {
       throw InputError("--start " + name, "'" + text + "' is not a finite number");
     }

@@ -21,8 +21,19 @@ Json cause_object(const Cause& cause, const DiagnosisNames& names) {
           {"upper", number(cause.upper)}};
 }
 
+// Causes of a finding, with the share of a thruster before the change.
+Json changed_objects(const Finding& finding, const DiagnosisNames& names) {
+  Json causes = Json::array();
+  for (std::size_t i = 0; i < finding.count; ++i) {
+    const Cause& cause = finding.causes[i];
+    causes.push_back(cause_object(cause, names));
+    causes.back()["before"] =
+        cause.kind == CauseKind::thruster ? number(finding.before[i]) : Json(nullptr);
+  }
+  return causes;
+}
+
 Json finding_object(const Finding& finding, const DiagnosisNames& names) {
-  const std::span<const Cause> causes(finding.causes);
   const bool judged = finding.state != FindingState::looking;
   const bool compared = judged && finding.causes[0].kind != CauseKind::frozen;
   return {{"since_s", number(finding.since_s)},
@@ -31,8 +42,7 @@ Json finding_object(const Finding& finding, const DiagnosisNames& names) {
           {"state", state_name(finding.state)},
           {"settled", finding.settled},
           {"text", finding_text(finding, names)},
-          {"causes", file::list(causes.first(judged ? finding.count : 0),
-                                [&](const Cause& cause) { return cause_object(cause, names); })},
+          {"causes", judged ? changed_objects(finding, names) : Json::array()},
           {"rival", compared ? cause_object(finding.rival, names) : Json(nullptr)},
           {"evidence", compared ? number(finding.evidence) : Json(nullptr)},
           {"margin", compared ? number(finding.margin) : Json(nullptr)},

@@ -103,9 +103,7 @@ std::size_t place_of(const std::string& target, const log::Dataset& data,
   const auto known = std::ranges::find(data.target_names, target);
   if (known == data.target_names.end()) {
     throw InputError({.file = source, .line = 0, .field = "axes"},
-                     "'" + target + "' is none of the targets, " +
-                         join_text(data.target_names, ", ") +
-                         did_you_mean(target, data.target_names));
+                     unknown_name(target, "target", data.target_names));
   }
   return static_cast<std::size_t>(known - data.target_names.begin());
 }

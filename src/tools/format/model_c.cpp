@@ -39,9 +39,7 @@ void check(const TrainedModel& model, const CodeOptions& options) {
     columns.push_back(axis.name);
   }
   for (const auto& [column, unit] : options.units) {
-    if (std::ranges::find(columns, column) == columns.end()) {
-      throw InputError("--units", unknown_name(column, "column of the model", columns));
-    }
+    require_name("--units", column, "column of the model", columns);
   }
 }
 

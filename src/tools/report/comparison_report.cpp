@@ -134,12 +134,7 @@ chart::TextTable comparison_view(const study::Comparison& comparison, const Comp
 }
 
 std::string contenders_note(const study::Comparison& comparison) {
-  std::vector<std::string> variants;
-  for (const Contest& contest : comparison.contests) {
-    if (contest.kind == ContenderKind::variant) {
-      variants.push_back(contest.name);
-    }
-  }
+  const std::vector<std::string> variants = variants_of(comparison);
   std::string text =
       "All learn the same rows once, in the order of time, and are judged on the "
       "same held-out rows.";

@@ -48,8 +48,9 @@ chart::TextTable health_table(const study::StreamResult& result) {
       .rows = {},
       .notes = {"Of its thrust at the start, with an interval of 90 % (docs/howto/diagnosis.md)."},
       .left = {0, 4}};
-  for (const Cause& health : result.diagnosis.health) {
-    const auto& [cause, times] = study::since_the_start(health, result.diagnosis.findings);
+  for (const Cause& present : result.diagnosis.present) {
+    const auto& [cause, times] =
+        study::since_the_start(present, result.diagnosis.health, result.diagnosis.findings);
     std::string changed;
     for (const double time_s : times) {
       changed += fmt::format("{}at {:.0f} s", changed.empty() ? "" : ", ", time_s);

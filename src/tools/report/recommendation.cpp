@@ -117,13 +117,18 @@ std::vector<std::string> recommendation(const study::Comparison& comparison) {
   return paragraphs;
 }
 
-std::string settings_advice(const study::Comparison& comparison) {
-  std::vector<std::string> tried;
+std::vector<std::string> variants_of(const study::Comparison& comparison) {
+  std::vector<std::string> names;
   for (const Contest& contest : comparison.contests) {
     if (contest.kind == ContenderKind::variant) {
-      tried.push_back(contest.name);
+      names.push_back(contest.name);
     }
   }
+  return names;
+}
+
+std::string settings_advice(const study::Comparison& comparison) {
+  const std::vector<std::string> tried = variants_of(comparison);
   if (tried.empty()) {
     return "";
   }

@@ -12,6 +12,9 @@ namespace kelpie::report {
 /// ahead, then the tried settings. Requires kelpie as the first contest.
 std::vector<std::string> recommendation(const study::Comparison& comparison);
 
+/// Names of the contests with a setting more than kelpie's.
+std::vector<std::string> variants_of(const study::Comparison& comparison);
+
 /// Which of the tried settings to use, with the gain, or "No gain: keep the defaults"; empty where
 /// none was tried.
 std::string settings_advice(const study::Comparison& comparison);

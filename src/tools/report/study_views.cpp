@@ -11,6 +11,7 @@
 
 #include "chart/wording.hpp"
 #include "core/text.hpp"
+#include "file/content.hpp"
 
 namespace kelpie::report {
 namespace {
@@ -37,7 +38,7 @@ std::string real_time(double share) {
 }
 
 std::string memory_text(const Spread& bytes) {
-  return bytes.runs == 0 ? "–" : chart::megabytes(static_cast<std::size_t>(bytes.median));
+  return bytes.runs == 0 ? "–" : file::megabytes(static_cast<std::size_t>(bytes.median));
 }
 
 std::string counted(std::size_t count, const std::string& what, const std::string& plural = "s") {

@@ -9,6 +9,7 @@
 
 #include "chart/wording.hpp"
 #include "core/text.hpp"
+#include "file/content.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_figures.hpp"
@@ -99,7 +100,7 @@ std::string axes_table(const study::StreamResult& result) {
   }
   if (result.memory_bytes > 0) {
     table.notes.push_back(fmt::format("memory: {} for {} ax{}s",
-                                      chart::megabytes(result.memory_bytes), result.axes.size(),
+                                      file::megabytes(result.memory_bytes), result.axes.size(),
                                       result.axes.size() == 1 ? "i" : "e"));
   }
   return chart::table_text(table);

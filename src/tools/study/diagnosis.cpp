@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -51,20 +52,29 @@ DiagnosisResult diagnosis_of(const DynamicsModel& model) {
   }
   result.findings = model.findings();
   result.health = diagnosis->health();
+  if (diagnosis->knows_thrust()) {
+    result.present = diagnosis->present();
+  }
   if (model.ready()) {
     result.authority = authority_of(model);
   }
   return result;
 }
 
-ThrusterSinceStart since_the_start(const Cause& health, std::span<const Finding> findings) {
-  ThrusterSinceStart thruster{health};
+ThrusterSinceStart since_the_start(const Cause& present, std::span<const Cause> health,
+                                   std::span<const Finding> findings) {
+  ThrusterSinceStart thruster{present};
+  if (const auto last = std::ranges::find(health, present.place, &Cause::place);
+      last != health.end()) {
+    const double half = std::hypot(0.5 * (last->upper - last->lower) * present.size,
+                                   0.5 * (present.upper - present.lower) * last->size);
+    thruster.cause.size *= last->size;
+    thruster.cause.lower = thruster.cause.size - half;
+    thruster.cause.upper = thruster.cause.size + half;
+  }
   for (const Finding& finding : findings) {
     for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
-      if (finding.settled && cause.kind == CauseKind::thruster && cause.place == health.place) {
-        thruster.cause.size *= cause.size;
-        thruster.cause.lower *= cause.lower;
-        thruster.cause.upper *= cause.upper;
+      if (finding.settled && cause.kind == CauseKind::thruster && cause.place == present.place) {
         thruster.changed_s.push_back(finding.since_s);
       }
     }

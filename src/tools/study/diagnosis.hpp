@@ -14,14 +14,16 @@ namespace kelpie::study {
 /// Findings and thruster health of a model after its stream.
 DiagnosisResult diagnosis_of(const DynamicsModel& model);
 
-/// Health of a thruster over its thrust at the start. A settled change becomes the reference of
-/// `health`, so health alone tells 100 % again two minutes after a loss. `changed_s`: times of the
-/// settled changes of this thruster.
+/// Share of the nominal thrust that a thruster gave in the last minute: of Diagnosis::present(),
+/// times Diagnosis::health() where known. A settled change becomes the reference of `health`, so
+/// health alone tells 100 % again two minutes after a loss. `changed_s`: times of the settled
+/// changes of this thruster.
 struct ThrusterSinceStart {
   Cause cause;
   std::vector<double> changed_s{};
 };
-ThrusterSinceStart since_the_start(const Cause& health, std::span<const Finding> findings);
+ThrusterSinceStart since_the_start(const Cause& present, std::span<const Cause> health,
+                                   std::span<const Finding> findings);
 
 /// Names of the targets, for DiagnosisNames.
 std::vector<std::string> target_names(const StreamResult& result);

@@ -102,6 +102,7 @@ struct DiagnosisResult {
   std::string why_not;            ///< why no diagnosis was possible; empty: diagnosis ran
   std::vector<Finding> findings;  ///< in the order of time
   std::vector<Cause> health;      ///< of every thruster; empty before the reference is complete
+  std::vector<Cause> present{};   ///< shares of the nominal thrust; empty before a reference
   std::optional<Authority> authority{};  ///< at the end, with the commands driven; empty: unknown
 };
 

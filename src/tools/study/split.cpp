@@ -151,9 +151,7 @@ SplitSettings parse_split(const std::string& text, std::uint64_t seed) {
   if (found == kKindNames.end()) {
     std::vector<std::string> names(kKindNames.begin(), kKindNames.end());
     names[static_cast<std::size_t>(SplitKind::column)] += ":NAME";
-    refuse({}, "split",
-           fmt::format("there is no '{}'{}; choose {}", name, did_you_mean(name, names),
-                       join_text(names, ", ")));
+    refuse({}, "split", unknown_name(name, "split", names));
   }
   SplitSettings settings{
       .kind = static_cast<SplitKind>(found - kKindNames.begin()), .seed = seed, .column = column};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vehicle/excitation.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -36,11 +35,7 @@ Eigen::Matrix3d mixing(const ExcitationSettings& settings) {
 
 ExcitationMode excitation_mode_from(const std::string& name) {
   const std::vector<std::string> names = {"independent", "correlated", "prbs", "steps", "pilot"};
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw InputError(unknown_name(name, "mode of excitation", names));
-  }
-  return static_cast<ExcitationMode>(found - names.begin());
+  return static_cast<ExcitationMode>(require_name({}, name, "mode of excitation", names));
 }
 
 void ExcitationSettings::validate() const {

@@ -131,11 +131,7 @@ const char* command_unit_name(CommandUnit unit) {
 
 CommandUnit command_unit_from(const std::string& name) {
   const std::vector<std::string> names(kCommandUnits.begin(), kCommandUnits.end());
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw InputError(unknown_name(name, "kind of command", names));
-  }
-  return static_cast<CommandUnit>(found - names.begin());
+  return static_cast<CommandUnit>(require_name({}, name, "kind of command", names));
 }
 
 const std::array<std::string, kPlanarThrusterCount>& planar_thruster_names() {

@@ -64,11 +64,7 @@ void validate_phase(const Scenario& scenario, std::size_t index) {
 
 LogKind log_kind_from(const std::string& name) {
   const std::vector<std::string> names = {"planar", "six_axes"};
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw InputError(unknown_name(name, "kind of log", names));
-  }
-  return static_cast<LogKind>(found - names.begin());
+  return static_cast<LogKind>(require_name({}, name, "kind of log", names));
 }
 
 void Scenario::validate() const {

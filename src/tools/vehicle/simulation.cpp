@@ -32,9 +32,9 @@ Eigen::Vector3d lateral_max_speeds(const VehicleParameters& vehicle) {
           vehicle.thrusters[kSway].max_speed_rps};
 }
 
-// A scenario being driven. `Recorder` sees the vehicle at rest, every change of phase and every
+// A scenario being driven. `Watcher` sees the vehicle at rest, every change of phase and every
 // tick.
-template <typename Recorder>
+template <typename Watcher>
 class Mission {
  public:
   Mission(const Scenario& scenario, const Progress& progress)
@@ -43,7 +43,7 @@ class Mission {
         all_ticks_(ticks_in(scenario.duration_s())),
         simulator_(scenario.vehicle, plant_of(scenario.phases.front()), scenario.current_m_s,
                    State{}),
-        recorder_(scenario, simulator_) {
+        watcher_(scenario, simulator_) {
     if (scenario.excitation.in_plane()) {
       excitation_.emplace(scenario.excitation, lateral_max_speeds(scenario.vehicle), scenario.seed);
     } else {
@@ -58,14 +58,14 @@ class Mission {
     const std::int64_t ticks = ticks_in(phase.duration_s);
     const std::int64_t ramp_ticks = std::llround(phase.ramp_s * kTicksPerSecond);
     simulator_.set_plant(ramp_ticks > 0 ? from : to);
-    recorder_.begin(phase);
+    watcher_.begin(phase);
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
       if (tick < ramp_ticks) {
         simulator_.set_plant(
             blend(from, to, static_cast<double>(tick + 1) / static_cast<double>(ramp_ticks)));
       }
       advance(phase.amplitude);
-      recorder_.record(phase.configuration);
+      watcher_.record(phase.configuration);
       ++ticks_;
       if (progress_ && (ticks_ % kProgressTicks == 0 || ticks_ == all_ticks_)) {
         progress_(static_cast<double>(ticks_) / static_cast<double>(all_ticks_));
@@ -73,7 +73,7 @@ class Mission {
     }
   }
 
-  auto finish() && { return std::move(recorder_).finish(); }
+  auto finish() && { return std::move(watcher_).finish(); }
 
  private:
   Plant plant_of(const Phase& phase) const {
@@ -94,13 +94,16 @@ class Mission {
   std::optional<Excitation> excitation_;
   std::optional<Pilot> pilot_;
   Simulator simulator_;
-  Recorder recorder_;
+  Watcher watcher_;
   std::int64_t ticks_ = 0;
 };
 
-class PlanarRecorder {
+// Rows at their rate, of velocities that are measured at the sensors' rate. `Kind` tells how a
+// velocity is read, and makes the rows.
+template <typename Kind>
+class Recorder {
  public:
-  PlanarRecorder(const Scenario& scenario, const Simulator& simulator)
+  Recorder(const Scenario& scenario, const Simulator& simulator)
       : scenario_(scenario),
         simulator_(simulator),
         row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
@@ -110,7 +113,7 @@ class PlanarRecorder {
   }
 
   void begin(const Phase& phase) {
-    sensors_.set_fault(scenario_.configurations[phase.configuration].sensors);
+    Kind::set_fault(sensors_, scenario_.configurations[phase.configuration]);
   }
 
   void record(std::size_t configuration) {
@@ -119,19 +122,16 @@ class PlanarRecorder {
       measure();
     }
     if (ticks_ % row_ticks_ == 0) {
-      rows_.push_back({.t_s = simulator_.time_s(),
-                       .configuration = configuration,
-                       .velocity = measurements_.back(),
-                       .rotors_rps = simulator_.state().rotors_rps.head<3>(),
-                       .acceleration = Eigen::Vector3d::Zero(),
-                       .true_acceleration = planar_flu(simulator_.acceleration())});
+      rows_.push_back(Kind::row(scenario_, simulator_, measurements_.back(), sensors_));
+      rows_.back().configuration = configuration;
     }
   }
 
-  std::vector<LogRow> finish() && {
+  std::vector<typename Kind::Row> finish() && {
     const double period_s = static_cast<double>(sensor_ticks_) * kTickS;
-    const std::vector<Eigen::Vector3d> slopes =
-        smoothed_slopes<3>(measurements_, period_s, kTuning.half_window_s);
+    const std::vector<typename Kind::Velocity> slopes =
+        smoothed_slopes<Kind::Velocity::RowsAtCompileTime>(measurements_, period_s,
+                                                           Kind::kHalfWindowS);
     const auto per_row = static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
     for (std::size_t row = 0; row < rows_.size(); ++row) {
       rows_[row].acceleration = slopes[(row + 1) * per_row];
@@ -140,72 +140,61 @@ class PlanarRecorder {
   }
 
  private:
-  void measure() {
-    measurements_.push_back(sensors_.measure(planar_flu(simulator_.state().velocity)));
-  }
+  void measure() { measurements_.push_back(sensors_.measure(Kind::velocity(simulator_))); }
 
   const Scenario& scenario_;
   const Simulator& simulator_;
   std::int64_t row_ticks_, sensor_ticks_;
-  VelocitySensors sensors_;
+  typename Kind::Sensors sensors_;
   std::int64_t ticks_ = 0;
-  std::vector<Eigen::Vector3d> measurements_;
-  std::vector<LogRow> rows_;
+  std::vector<typename Kind::Velocity> measurements_;
+  std::vector<typename Kind::Row> rows_;
 };
 
-class SixAxisRecorder {
- public:
-  SixAxisRecorder(const Scenario& scenario, const Simulator& simulator)
-      : unit_(scenario.vehicle.command_unit),
-        simulator_(simulator),
-        row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
-        sensor_ticks_(sensor_ticks(row_ticks_)),
-        sensors_(scenario.noise, scenario.seed) {
-    measure();
+struct InPlane {
+  using Row = LogRow;
+  using Sensors = VelocitySensors;
+  using Velocity = Eigen::Vector3d;
+  static constexpr double kHalfWindowS = kTuning.half_window_s;
+
+  static void set_fault(Sensors& sensors, const Configuration& configuration) {
+    sensors.set_fault(configuration.sensors);
   }
-
-  void begin(const Phase& /*phase*/) {}  // validate() refuses faults of sensors
-
-  void record(std::size_t configuration) {
-    ++ticks_;
-    if (ticks_ % sensor_ticks_ == 0) {
-      measure();
-    }
-    if (ticks_ % row_ticks_ == 0) {
-      SixAxisRow& row =
-          rows_.emplace_back(six_axis_row(simulator_, unit_, measurements_.back(), sensors_));
-      row.configuration = configuration;
-      row.true_acceleration = simulator_.acceleration();
-    }
+  static Velocity velocity(const Simulator& simulator) {
+    return planar_flu(simulator.state().velocity);
   }
-
-  std::vector<SixAxisRow> finish() && {
-    const double period_s = static_cast<double>(sensor_ticks_) * kTickS;
-    const std::vector<Vector6> slopes =
-        smoothed_slopes<6>(measurements_, period_s, kTuning.six_half_window_s);
-    const auto per_row = static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
-      rows_[row].acceleration = slopes[(row + 1) * per_row];
-    }
-    return std::move(rows_);
+  static Row row(const Scenario& /*scenario*/, const Simulator& simulator, const Velocity& measured,
+                 Sensors& /*sensors*/) {
+    return {.t_s = simulator.time_s(),
+            .configuration = 0,
+            .velocity = measured,
+            .rotors_rps = simulator.state().rotors_rps.head<3>(),
+            .acceleration = Velocity::Zero(),
+            .true_acceleration = planar_flu(simulator.acceleration())};
   }
-
- private:
-  void measure() { measurements_.push_back(sensors_.measure(simulator_.state().velocity)); }
-
-  CommandUnit unit_;
-  const Simulator& simulator_;
-  std::int64_t row_ticks_, sensor_ticks_;
-  SixAxisSensors sensors_;
-  std::int64_t ticks_ = 0;
-  std::vector<Vector6> measurements_;
-  std::vector<SixAxisRow> rows_;
 };
 
-template <typename Recorder>
+struct OnSixAxes {
+  using Row = SixAxisRow;
+  using Sensors = SixAxisSensors;
+  using Velocity = Vector6;
+  static constexpr double kHalfWindowS = kTuning.six_half_window_s;
+
+  // validate() refuses faults of sensors.
+  static void set_fault(Sensors& /*sensors*/, const Configuration& /*configuration*/) {}
+  static Velocity velocity(const Simulator& simulator) { return simulator.state().velocity; }
+  static Row row(const Scenario& scenario, const Simulator& simulator, const Velocity& measured,
+                 Sensors& sensors) {
+    Row row = six_axis_row(simulator, scenario.vehicle.command_unit, measured, sensors);
+    row.true_acceleration = simulator.acceleration();
+    return row;
+  }
+};
+
+template <typename Kind>
 auto recorded(const Scenario& scenario, const Progress& progress) {
   scenario.validate();
-  Mission<Recorder> mission(scenario, progress);
+  Mission<Recorder<Kind>> mission(scenario, progress);
   for (std::size_t phase = 0; phase < scenario.phases.size(); ++phase) {
     mission.drive(phase);
   }
@@ -229,11 +218,11 @@ SixAxisRow six_axis_row(const Simulator& simulator, CommandUnit unit, const Vect
 
 std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress) {
   require_plane(scenario.vehicle);
-  return recorded<PlanarRecorder>(scenario, progress);
+  return recorded<InPlane>(scenario, progress);
 }
 
 std::vector<SixAxisRow> simulate_six_axes(const Scenario& scenario, const Progress& progress) {
-  return recorded<SixAxisRecorder>(scenario, progress);
+  return recorded<OnSixAxes>(scenario, progress);
 }
 
 }  // namespace kelpie::vehicle

@@ -85,12 +85,9 @@ std::vector<std::string> frame_names() {
 }
 
 std::vector<Thruster> frame_thrusters(const std::string& frame, const Eigen::Vector3d& size_m) {
-  const auto found = std::ranges::find(frames(), frame, &Frame::name);
-  if (found == frames().end()) {
-    throw InputError(unknown_name(frame, "frame of ArduSub", frame_names()));
-  }
+  const Frame& found = frames()[require_name({}, frame, "frame of ArduSub", frame_names())];
   std::vector<Thruster> thrusters;
-  for (const Place& motor : found->motors) {
+  for (const Place& motor : found.motors) {
     Thruster thruster;
     thruster.name = "m" + std::to_string(thrusters.size() + 1);
     thruster.position_m = 0.5 * size_m.cwiseProduct(Eigen::Vector3d(motor.place.data()));

@@ -46,7 +46,7 @@ TEST(Setting, TextGoesInAndComesOutTheSame) {
 TEST(Setting, RefusalsNameTheFieldAndWhatWouldBeRight) {
   Paint paint;
   EXPECT_EQ(refusal([&] { kColour.assign(paint, "gren"); }),
-            "colour: 'gren' is not one of red, green (did you mean 'green'?)");
+            "colour: 'gren' is no choice (did you mean 'green'?); there are red, green");
   EXPECT_EQ(refusal([&] { kCoats.assign(paint, "2.5"); }), "coats: '2.5' is not a whole number");
   EXPECT_EQ(refusal([&] { kLitres.assign(paint, "many"); }), "litres: 'many' is not a number");
   EXPECT_EQ(paint.coats, 2);

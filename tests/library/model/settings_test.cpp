@@ -78,8 +78,9 @@ TEST(ModelSettings, RefusalsNameTheSetting) {
   settings.assign("buffer", "0");
   EXPECT_EQ(message_of<InputError>([&] { settings.validate(); }),
             "buffer: 0 is out of range; it has to be 2 to 20000");
-  EXPECT_EQ(message_of<InputError>([] { ModelSettings::from_preset("papper", 2); }),
-            "preset: 'papper' is not one of default, small, paper (did you mean 'paper'?)");
+  EXPECT_EQ(
+      message_of<InputError>([] { ModelSettings::from_preset("papper", 2); }),
+      "preset: 'papper' is no choice (did you mean 'paper'?); there are default, small, paper");
 }
 
 TEST(ModelSettings, ARemovedSettingIsRefusedWithWhatToWriteInstead) {

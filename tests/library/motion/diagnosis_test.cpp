@@ -33,6 +33,12 @@ Diagnosis after(const Drive::Fault& fault, std::uint64_t seed, const Drive::Faul
   return diagnosis;
 }
 
+std::string saved(Diagnosis& diagnosis) {
+  Archive archive;
+  diagnosis.visit(archive);
+  return archive.bytes();
+}
+
 void expect_named(const Drive::Fault& fault, CauseKind kind, std::size_t place, double size) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Diagnosis diagnosis = after(fault, seed);
@@ -130,7 +136,48 @@ TEST(Diagnosis, GoesOnFromAChange) {
   EXPECT_TRUE(diagnosis.findings()[0].settled);
   EXPECT_NEAR(diagnosis.findings()[0].causes[0].size, 0.5, 0.01);
   EXPECT_EQ(diagnosis.findings()[1].causes[0].place, 4U);
-  EXPECT_NEAR(diagnosis.findings()[1].causes[0].size, 2.0, 0.05);
+  EXPECT_NEAR(diagnosis.findings()[1].causes[0].size, 1.0, 0.03);
+  EXPECT_NEAR(diagnosis.findings()[1].before[0], 0.5, 0.01);
+}
+
+// Several times its last thrust would say nothing, the nominal thrust says all; also of what was
+// saved.
+TEST(Diagnosis, TellsTheNominalShareOfADeadThrusterThatComesBack) {
+  Diagnosis diagnosis = drive_diagnosis();
+  Drive drive(8);
+  drive.show(kBefore, {}, diagnosis);
+  drive.show(5 * kMinute, {.thrust = {1.0, 0.0, 1.0}}, diagnosis);
+  drive.show(3 * kMinute, {}, diagnosis);
+  const std::string bytes = saved(diagnosis);
+  Diagnosis loaded = drive_diagnosis();
+  Archive archive(bytes);
+  loaded.visit(archive);
+  for (const Diagnosis* const each : {&diagnosis, &loaded}) {
+    const Finding& last = each->findings().back();
+    ASSERT_EQ(last.state, FindingState::named);
+    EXPECT_LE(last.causes[0].lower, 1.0);
+    EXPECT_GE(last.causes[0].upper, 1.0);
+    EXPECT_NEAR(last.causes[0].size, 1.0, 0.1);
+    EXPECT_NEAR(last.before[0], 0.0, 0.01);
+    EXPECT_NEAR(each->present()[1].size, last.causes[0].size, 1e-12);
+    const std::string text = finding_text(last, {kInputs, kTargets});
+    EXPECT_TRUE(text.starts_with("th2 gives ")) << text;
+    EXPECT_NE(text.find(" % of its nominal thrust again ("), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with("; before 0 %)")) << text;
+  }
+}
+
+// A payload slows every acceleration; the thruster gives half of its thrust all the same.
+TEST(Diagnosis, AShareOfThrustDoesNotCountALoadTwice) {
+  Diagnosis diagnosis = drive_diagnosis();
+  Drive drive(13);
+  drive.show(kBefore, {}, diagnosis);
+  drive.show(5 * kMinute, {.inertia = 1.5}, diagnosis);
+  drive.show(2 * kMinute, {.thrust = {1.0, 0.5, 1.0}, .inertia = 1.5}, diagnosis);
+  ASSERT_EQ(diagnosis.findings().size(), 2U);
+  EXPECT_EQ(diagnosis.findings()[0].causes[0].kind, CauseKind::load);
+  EXPECT_EQ(diagnosis.findings()[1].causes[0].place, 4U);
+  EXPECT_NEAR(diagnosis.present()[1].size, 0.5, 0.02);
 }
 
 TEST(Diagnosis, ShrugsOffOutliersAndRowsThatArentNumbers) {
@@ -148,12 +195,6 @@ TEST(Diagnosis, ShrugsOffOutliersAndRowsThatArentNumbers) {
     diagnosis.update(x, y, t);
   });
   EXPECT_EQ(diagnosis.found(), 0U);
-}
-
-std::string saved(Diagnosis& diagnosis) {
-  Archive archive;
-  diagnosis.visit(archive);
-  return archive.bytes();
 }
 
 // Saved at rows in all its states: before a reference, amid windows, looking into a change.

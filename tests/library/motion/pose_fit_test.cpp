@@ -43,7 +43,7 @@ std::vector<double> together(double t) {
   return std::vector<double>(3, sines(t).front());
 }
 
-// Driven in a current by the midpoint rule, measured with white noise and headings within ±π, with
+// Driven in a current by the midpoint rule, measured with white noise, with
 // a hole of 20 s without poses and some outliers. Speeds are logged a little late.
 PoseRows measured(double duration_s, double noise_m, std::vector<double> (*speeds)(double)) {
   constexpr double kStepS = 0.025;
@@ -69,7 +69,7 @@ PoseRows measured(double duration_s, double noise_m, std::vector<double> (*speed
       const double far = step % 4000 == 0 ? 30.0 : 0.0;
       for (const double value :
            {pose[0] + noise_m * random.normal() + far, pose[1] + noise_m * random.normal(),
-            std::remainder(pose[2] + 0.003 * random.normal(), 2.0 * std::numbers::pi)}) {
+            pose[2] + 0.003 * random.normal()}) {
         rows.poses.push_back(is_lost ? std::numeric_limits<double>::quiet_NaN() : value);
       }
       for (const double speed : speeds(t - kLateS)) {

@@ -18,6 +18,20 @@ TEST(Wording, AThrustersShareWithItsInterval) {
             "th2 gives 48 % of its thrust (41 to 55 %)");
 }
 
+TEST(Wording, AThrusterThatHadChangedIsToldAgainstItsNominalThrust) {
+  Finding finding;
+  finding.state = FindingState::named;
+  finding.count = 1;
+  finding.causes[0] = {CauseKind::thruster, 4, 1.0, 0.97, 1.03};
+  finding.before[0] = -0.0004;
+  EXPECT_EQ(finding_text(finding, kNames),
+            "th2 gives 100 % of its nominal thrust again (97 to 103 %; before 0 %)");
+  finding.causes[0] = {CauseKind::thruster, 4, 0.3, 0.28, 0.32};
+  finding.before[0] = 0.6;
+  EXPECT_EQ(finding_text(finding, kNames),
+            "th2 gives 30 % of its nominal thrust (28 to 32 %; before 60 %)");
+}
+
 TEST(Wording, NumbersHaveTheDigitsThatTheIntervalGives) {
   EXPECT_EQ(cause_text({CauseKind::sensor_bias, 0, 0.0512, 0.0493, 0.0531}, kNames),
             "u reads 0.0512 (0.0493 to 0.0531) too much");

@@ -378,7 +378,7 @@ TEST(SampleStream, AnAttitudeTurnsFromTheWorldToTheVehicle) {
             std::string::npos);
   EXPECT_NE(refusal([](auto& vector) { vector.attitude[0] = "u"; }).find("turned itself"),
             std::string::npos);
-  EXPECT_NE(refusal([](auto& vector) { vector.attitude[0] = "ph"; }).find("none of the states"),
+  EXPECT_NE(refusal([](auto& vector) { vector.attitude[0] = "ph"; }).find("no state or command"),
             std::string::npos);
 }
 
@@ -393,9 +393,10 @@ TEST(SampleStream, PlansThatCannotBeAreRefused) {
             "n: its lag has to be a number of s; one to be estimated takes a log");
   EXPECT_EQ(refusal([](StreamPlan& plan) { plan.inputs.clear(); }),
             "inputs: there have to be one or more");
-  EXPECT_EQ(refusal([](StreamPlan& plan) { plan.targets = {"udotz"}; }),
-            "targets: 'udotz' is none of the states, commands and derivatives (did you mean "
-            "'udot'?): u, n, udot");
+  EXPECT_EQ(
+      refusal([](StreamPlan& plan) { plan.targets = {"udotz"}; }),
+      "targets: 'udotz' is no state, command or derivative (did you mean 'udot'?); there are u, "
+      "n, udot");
   EXPECT_EQ(refusal([](StreamPlan& plan) { plan.wait_s = -1.0; }),
             "wait: -1 is out of range; it has to be 0 to 1e+06 s");
   EXPECT_EQ(refusal([](StreamPlan& plan) { plan.sources[0].keep = 0; }),

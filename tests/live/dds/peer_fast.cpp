@@ -176,6 +176,7 @@ class FastPeer : public kelpie::testing::PeerActions {
         reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
     qos.durability().kind = fast::VOLATILE_DURABILITY_QOS;
     qos.history().depth = 10;
+    qos.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};  // send() waits for one
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
     writers_.push_back(publisher->create_datawriter(topic_of(topic, type), qos));
@@ -206,7 +207,13 @@ class FastPeer : public kelpie::testing::PeerActions {
   void send_text(const std::string& text) override {
     send(cdr_of([&](Cdr& cdr) { cdr << text; }));
   }
-  void send(const Bytes& cdr) override { send_by(writers_.size() - 1, cdr); }
+  // Waits for the acknowledgement, without which a reader may not have had a heartbeat yet: Cyclone
+  // DDS takes a message of many packets that the first heartbeat overtakes for an earlier one.
+  void send(const Bytes& cdr) override {
+    const eprosima::fastrtps::Duration_t patience{30, 0};
+    send_by(writers_.size() - 1, cdr);
+    writers_.back()->wait_for_acknowledgments(patience);
+  }
 
  private:
   template <typename Write>

@@ -18,7 +18,7 @@ namespace {
 
 using testing::message_of;
 
-std::string refusal(const std::filesystem::path& file, std::size_t most = 1 << 20) {
+std::string refusal(const std::filesystem::path& file, std::size_t most = 1'200'000) {
   return message_of<InputError>([&] { file::read_content(file, "a log", most); });
 }
 
@@ -47,7 +47,7 @@ TEST(Content, NoMoreIsReadThanAllowed) {
   const testing::TemporaryFolder folder;
   const std::string large(3 << 20, 'x');
   testing::write_text(folder / "file", large);
-  const std::string why = ": is larger than 1 MB, the most that is read of a log";
+  const std::string why = ": is larger than 1.2 MB, the most that is read of a log";
   EXPECT_EQ(refusal(folder / "file"), (folder / "file").string() + why);
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   std::ignore = std::signal(SIGPIPE, SIG_IGN);

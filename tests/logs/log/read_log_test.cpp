@@ -230,7 +230,7 @@ TEST_F(ReadLog, WhatIsWrongIsNamedWithItsPlace) {
        "c.toml:2: log.vectors[0].attitude: has to be a list of roll, pitch and yaw"},
       {"[log]\nvectors = [{columns = [\"x\", \"y\", \"z\"], from = \"NED\", to = \"FRD\", "
        "attitude = [\"p\", \"t\", \"s\"], angles = \"grad\"}]\n",
-       "log.vectors[0].angles: 'grad' is none of rad, deg"},
+       "log.vectors[0].angles: 'grad' is no choice (did you mean 'rad'?); there are rad, deg"},
   };
   for (const auto& [config, message] : cases) {
     const std::string said =

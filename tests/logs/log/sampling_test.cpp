@@ -174,7 +174,7 @@ TEST(Sampling, WhatCannotBeIsRefusedByName) {
   EXPECT_NE(refusal(plan, apart).find("u: is the name of two columns"), std::string::npos);
   plan = plan_of({"u", "n"});
   plan.derived = {{"udot", "U"}};
-  EXPECT_NE(refusal(plan, apart).find("udot: 'U' is none of the states and commands (did you mean"),
+  EXPECT_NE(refusal(plan, apart).find("udot: 'U' is no state or command (did you mean"),
             std::string::npos);
 }
 

@@ -161,6 +161,35 @@ TEST_F(FirstHour, TheChangeIsToldAlikeAndTheChangedVehicleLearnedAlone) {
   EXPECT_EQ(run("learn log.csv log.csv --since 5 --out late").exit_code, 2);
 }
 
+// A propeller that was blocked and runs again.
+TEST_F(FirstHour, AThrusterThatComesBackHasItsThrust) {
+  write("freed.toml", "vehicle = \"" KELPIE_SOURCE_DIR
+                      "/vehicles/dagon.toml\"\n"
+                      R"(
+seed = 1
+rate_hz = 4.0
+noise = "as_recorded"
+configurations = [{ name = "nominal" }, { name = "blocked", effectiveness = { surge_right = 0.0 } }]
+phases = [{ configuration = "nominal", duration_s = 700.0 },
+          { configuration = "blocked", duration_s = 300.0 },
+          { configuration = "nominal", duration_s = 500.0 }]
+)");
+  succeeded(run("simulate freed.toml --out log.csv"));
+  const Outcome outcome =
+      succeeded(run("learn log.csv --out out --verbose" + testing::kFewSamples));
+  const std::size_t row = outcome.out.find("th2 ", outcome.out.find("Thrusters in the last"));
+  ASSERT_NE(row, std::string::npos) << outcome.out;
+  std::istringstream cells(outcome.out.substr(row + 4));
+  double share = 0.0;
+  cells >> share;
+  EXPECT_NEAR(share, 100.0, 10.0) << outcome.out.substr(row, 60);
+  const nlohmann::json result = parsed("out/result.json");
+  const nlohmann::json& cause = result["diagnosis"]["findings"].back()["causes"][0];
+  EXPECT_NEAR(cause["size"], 1.0, 0.1);
+  EXPECT_NEAR(cause["before"], 0.0, 0.02);
+  EXPECT_NE(outcome.out.find(" % of its nominal thrust again ("), std::string::npos) << outcome.out;
+}
+
 // D9: identify tells nothing of pulses rather than NaN.
 TEST_F(FirstHour, NothingThatIsIdentifiedIsNaN) {
   simulate("small.toml", "speeds.csv");

@@ -58,9 +58,10 @@ TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --set epsilon=-1", "--set: epsilon: -1 is out of range");
   expect_refused("log.csv --set gama=1", "--set: gama: unknown setting (did you mean 'gamma'?)");
   expect_refused("log.csv --set gamma", "'gamma' is not of the form key=value");
-  expect_refused("log.csv --set forget=lifo", "'lifo' is not one of fifo, paper, age");
+  expect_refused("log.csv --set forget=lifo",
+                 "'lifo' is no choice (did you mean 'fifo'?); there are fifo, paper, age");
   expect_refused("log.csv --split half",
-                 "split: there is no 'half'; choose random, blocks, pieces, tail");
+                 "split: 'half' is no split; there are random, blocks, pieces, tail");
   expect_refused("log.csv --rate 3 --time t", "--time");
   expect_refused("log.csv --checkpoint-every -1",
                  "--checkpoint-every: '-1' has to be a whole number, 0 or more");

@@ -122,7 +122,8 @@ TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
             std::string::npos);
   other = log();
   other.target_names = {"udot", "vdot"};
-  EXPECT_NE(refusal(memory(), other, settings).find("'rdot' is none of the targets, udot, vdot"),
+  EXPECT_NE(refusal(memory(), other, settings)
+                .find("'rdot' is no target (did you mean 'udot'?); there are udot, vdot"),
             std::string::npos);
   ModelSettings small = settings;
   small.assign("memory", "1");

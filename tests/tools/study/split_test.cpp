@@ -202,9 +202,10 @@ TEST(Split, KindsGoByTheirNames) {
   const auto refusal = [](const std::string& text) {
     return message_of<InputError>([&] { study::parse_split(text, 1); });
   };
-  EXPECT_EQ(refusal("block"),
-            "split: there is no 'block' (did you mean 'blocks'?); choose random, blocks, pieces, "
-            "tail, column:NAME, none, auto");
+  EXPECT_EQ(
+      refusal("block"),
+      "split: 'block' is no split (did you mean 'blocks'?); there are random, blocks, pieces, "
+      "tail, column:NAME, none, auto");
   EXPECT_EQ(refusal("tail:held"), "split: 'tail' takes nothing after a colon");
   for (const std::string text : {"column", "column:"}) {
     EXPECT_EQ(refusal(text),
