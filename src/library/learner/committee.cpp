@@ -91,11 +91,10 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
     : learner_(inputs, settings, terms),
       shares_(first_shares(plan.alone)),
       seen_(kOnline.range.margin),
-      seen_terms_(plan.alone ? 0 : terms, SeenRange(kOnline.range.term_margin)),
-      term_ranges_(seen_terms_.size()),
       to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
+    limit_terms(terms);
     fits_.emplace(inputs, terms, plan.line, settings);
     for (std::size_t k = 0; k < kMembers; ++k) {
       frozen_copies_.push_back(function(k));
@@ -157,12 +156,13 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   return decision;
 }
 
-void Committee::see(std::span<const double> z, double y) {
-  seen_.add(y);
-  see_terms(z);
+void Committee::limit_terms(std::size_t terms) {
+  seen_terms_.resize(terms, SeenRange(kOnline.range.term_margin));
+  term_ranges_.resize(terms);
 }
 
-void Committee::see_terms(std::span<const double> z) {
+void Committee::see(std::span<const double> z, double y) {
+  seen_.add(y);
   const std::span<const double> terms = z.last(seen_terms_.size());
   for (std::size_t k = 0; k < terms.size(); ++k) {
     seen_terms_[k].add(terms[k]);
@@ -278,22 +278,12 @@ void Committee::resume_from(const FunctionMix& said, const PastModel::Completion
   }
   shares_.resume_from(shares);
   seen_.resume_from({said.limits.low, said.limits.high});
+  limit_terms(said.term_ranges.size());
   for (std::size_t k = 0; k < said.term_ranges.size(); ++k) {
     term_ranges_[k] = said.term_ranges[k];
     seen_terms_[k].resume_from(term_ranges_[k]);
   }
-  if (said.term_ranges.empty()) {  // of an earlier version
-    see_buffer_terms();
-  }
   freeze_copies();
-}
-
-void Committee::see_buffer_terms() {
-  const SampleStore& samples = learner_.champion().buffer().samples();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples.get(i, sample_);
-    see_terms(sample_);
-  }
 }
 
 // The centres of a function, then the learner's samples.
@@ -423,6 +413,7 @@ void Committee::expect(std::span<const double> weights) {
     return;
   }
   fits_->line.expect(weights, kOnline.members.nominal_known);
+  limit_terms(0);
   std::vector<double> shares = first_shares(false);
   as_vector(shares) *= 1.0 - kOnline.members.nominal_share;
   shares[kLine] += kOnline.members.nominal_share;
@@ -484,7 +475,11 @@ void Committee::visit(Archive& archive) {
   archive.flag(kernels_only_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
-  for (std::size_t k = 0; k < seen_terms_.size(); ++k) {
+  std::size_t limited = seen_terms_.size();
+  archive.whole(limited);
+  archive.require(limited == 0 || limited == seen_terms_.size(), "limits of other terms");
+  limit_terms(limited);
+  for (std::size_t k = 0; k < limited; ++k) {
     archive.part("seen term", seen_terms_[k]);
     term_ranges_[k] = seen_terms_[k].range();
   }

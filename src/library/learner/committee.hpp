@@ -97,8 +97,8 @@ class Committee final : public OnlineRegressor {
   void resume_from(const FunctionMix& said, const PastModel::Completion& complete, double t);
 
   /// Begins with weights of the terms known beforehand; the last number is of the bias. `line`
-  /// takes these as a prior, and a larger share until errors are known. Requires a committee
-  /// without samples. Allocates nothing.
+  /// takes these as a prior, and a larger share until errors are known; terms have no range.
+  /// Requires a committee without samples. Allocates nothing.
   void expect(std::span<const double> weights);
 
   /// Follows a change of the vehicle by a known step of the terms' weights; the last number is of
@@ -147,8 +147,7 @@ class Committee final : public OnlineRegressor {
   bool alone() const { return !fits_; }
   Limits limits() const;
   void see(std::span<const double> z, double y);
-  void see_terms(std::span<const double> z);
-  void see_buffer_terms();
+  void limit_terms(std::size_t terms);
   const SvrFunction& function(std::size_t member) const;
   std::span<const WeightedFunction> weighted_functions(WeightedFunctions& room) const;
   double short_range_part(std::span<const double> z) const;
@@ -168,13 +167,13 @@ class Committee final : public OnlineRegressor {
   std::optional<Fits> fits_;                ///< empty: the learner is alone
   std::vector<SvrFunction> frozen_copies_;  ///< every member's model at the start of the block
   MemberShares shares_;
-  SeenRange seen_;                     ///< targets
-  std::vector<SeenRange> seen_terms_;  ///< none where the learner is alone
-  std::vector<ValueRange> term_ranges_;     ///< of seen_terms_
-  Relearning to_learn_;                ///< the buffer's samples that the fits have still to relearn
-  bool kernels_only_ = false;          ///< these fits are `precise` and `memory`
-  std::vector<double> sample_;         ///< scratch
-  Budget budget_;                      ///< of every update
+  SeenRange seen_;                       ///< targets
+  std::vector<SeenRange> seen_terms_;    ///< none: alone, or known beforehand
+  std::vector<ValueRange> term_ranges_;  ///< of seen_terms_
+  Relearning to_learn_;         ///< the buffer's samples that the fits have still to relearn
+  bool kernels_only_ = false;   ///< these fits are `precise` and `memory`
+  std::vector<double> sample_;  ///< scratch
+  Budget budget_;               ///< of every update
 };
 
 }  // namespace kelpie

@@ -109,7 +109,7 @@ struct OnlineTuning {
   /// SeenRange: by hand.
   struct Range {
     double margin = 0.1;        ///< of targets, added on either side, of the width
-    double term_margin = 0.5;   ///< of physics terms, the same
+    double term_margin = 0.5;   ///< of physics terms, the same; docs/method/committee.md
     double early_margin = 1.0;  ///< the same for few targets [standard deviations]
   } range;
 

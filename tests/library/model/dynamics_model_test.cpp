@@ -9,6 +9,7 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "model/dynamics_axis.hpp"
 #include "support.hpp"
@@ -254,6 +255,27 @@ TEST(DynamicsModel, AGivenScalingIsUsedFromTheFirstSample) {
 }
 
 // Raw units must not matter: metres or millimetres, the same model.
+// A glider's sink rate follows its pitch. Depth says nothing, but a fit of few samples always finds
+// a little of its square, which would outweigh the pitch far below the depths seen.
+TEST(DynamicsModel, AnInputFarBeyondItsRangeDoesNotOutweighTheOthers) {
+  RandomStream random(1, "glider");
+  DynamicsModel model({"pitch", "depth"}, {"w"}, ModelSettings::from_preset("default", 1));
+  const auto sink_rate = [](double pitch) { return 0.2 * std::sin(pitch); };
+  for (int i = 0; i < 1000; ++i) {
+    const double pitch = 0.5 * std::sin(0.05 * i) + 0.05 * random.normal();
+    const double depth = 100.0 - 100.0 * std::cos(0.01 * i);
+    model.update(std::array{pitch, depth}, std::array{sink_rate(pitch) + 0.03 * random.normal()},
+                 20.0 * i);
+  }
+  double squares = 0.0;
+  for (double pitch = -0.5; pitch <= 0.5; pitch += 0.1) {
+    std::array<double, 1> w{};
+    model.predict(std::array{pitch, 700.0}, w);
+    squares += std::pow(w[0] - sink_rate(pitch), 2) / 11.0;
+  }
+  EXPECT_LT(std::sqrt(squares), 0.02) << "a tenth of what pitch does";
+}
+
 TEST(DynamicsModel, IsInvariantToUnits) {
   const Drive samples = drive(6, 500);
   Drive scaled = samples;
