@@ -19,7 +19,11 @@
 #include "model_eval.inc"
 
 /* Two members: the first with one support vector at z = (1, 0), the second of terms alone. */
-static const struct kelpie_axis axes[] = {{0, 2, -10, 10, 0, 1, {1, 0}, {{2, 0}, {1, 0.5}}}};
+static const struct kelpie_axis axes[] = {{0, 2, -10, 10, 0, 1, {1, 0}, {{2, 0}, {1, 0.5}},
+                                           {{-99, 99}, {-99, 99}, {-99, 99}, {-99, 99}}}};
+/* The same without limits, with terms that end at -0.25 (from below), at 1 and at 0. */
+static const struct kelpie_axis narrow[] = {{0, 2, -999, 999, 0, 1, {1, 0}, {{2, 0}, {1, 0.5}},
+                                             {{-99, 99}, {-0.25, 99}, {-99, 1}, {0, 99}}}};
 static const struct kelpie_member members[] = {
     {0.75, 0, 1, 0.5, 1, 0.25, 3, {0, 0, 0, 0}},
     {0.25, 1, 1, 0.5, 1, 0, 0, {1, 10, 100, 1000}},
@@ -44,7 +48,8 @@ static const struct kelpie_step steps[] = {
 static const short ends[] = {9, 15, 17, 24};
 static const short slopes[][2] = {{0, 0}, {0, 1}, {1, 1}, {2, 0}, {3, 0}};
 /* Three members that disagree. */
-static const struct kelpie_axis doubtful[] = {{0, 3, -10, 10, 2, 9, {1, 0}, {{2, 0}, {1, 0.5}}}};
+static const struct kelpie_axis doubtful[] = {{0, 3, -10, 10, 2, 9, {1, 0}, {{2, 0}, {1, 0.5}},
+                                               {{-99, 99}, {-99, 99}, {-99, 99}, {-99, 99}}}};
 static const struct kelpie_member opinions[] = {
     {0.5, 0, 1, 0.5, 1, 0.25, 3, {0, 0, 0, 0}},
     {0.25, 1, 1, 0.5, 1, 0, 1, {0, 0, 0, 0}},
@@ -55,6 +60,9 @@ static const double places[][2] = {{0, 0}, {0, 0}, {6, 0}};
 static const double densities[] = {1, 1, 0};
 static const struct kelpie_tables tables = {axes,  members, support_vectors, weights, steps,
                                             ends,  slopes,  known,           places,  densities};
+
+static const struct kelpie_tables within = {narrow, members, support_vectors, weights, steps,
+                                            ends,   slopes,  known,           places,  densities};
 
 static const struct kelpie_tables disagreeing = {doubtful, opinions, support_vectors, weights,
                                                  steps,    ends,     slopes,          known,
@@ -89,5 +97,9 @@ int check(void)
   if (novelty != 1) return 11;
   /* 5.5, 1 and -2: the mean is 2.5, the variance of the first two 4.5, g = 4.5. */
   kelpie_evaluate(&disagreeing, vector, y, jacobian);
-  return near(y[0], 2.5 - 4.5 * 9 / (4.5 * 4.5 + 9 + 9)) ? 0 : 12;
+  if (!near(y[0], 2.5 - 4.5 * 9 / (4.5 * 4.5 + 9 + 9))) return 12;
+  /* Within their ranges the terms are -3, -0.25, 1 and 0, and only the first has a slope. */
+  kelpie_evaluate(&within, vector, y, jacobian);
+  if (!near(y[0], 0.75 * 5.5 + 0.25 * (-3 - 2.5 + 100))) return 13;
+  return near(jacobian[0], 0.25 * -2) && jacobian[1] == 0 ? 0 : 14;
 }
