@@ -308,8 +308,7 @@ double Committee::predict(std::span<const double> z) const {
   WeightedFunctions room;
   return alone() || !learner_.champion().ready()
              ? learner_.predict(z)
-             : kelpie::mixed_value(weighted_functions(room), limits(),
-                                   as_span(within_ranges(term_ranges_, z)));
+             : mixed_value(weighted_functions(room), limits(), term_ranges_, z);
 }
 
 // What the learner's fine part adds to the weighted mean.
@@ -327,10 +326,7 @@ double Committee::short_range_part(std::span<const double> x) const {
 
 double Committee::with_gradient(std::span<const double> z, std::span<double> gradient) const {
   WeightedFunctions room;
-  const double value = mixed_value_with_gradient(weighted_functions(room), limits(),
-                                                 as_span(within_ranges(term_ranges_, z)), gradient);
-  flatten_beyond(term_ranges_, z, gradient);
-  return value;
+  return mixed_value_with_gradient(weighted_functions(room), limits(), term_ranges_, z, gradient);
 }
 
 std::vector<MemberShare> Committee::members() const {

@@ -73,20 +73,34 @@ Shrinkage shrinkage_of(const MixSums& sums, double caution) {
           .centre = centre};
 }
 
+// Slopes of terms beyond their ranges become 0.
+void flatten_beyond(std::span<const ValueRange> ranges, std::span<const double> x,
+                    std::span<double> gradient) {
+  const std::size_t first = x.size() - ranges.size();
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    if (x[first + k] < ranges[k].low || x[first + k] > ranges[k].high) {
+      gradient[first + k] = 0.0;
+    }
+  }
+}
+
 template <typename WeightedFunctions>
 double value_of(const WeightedFunctions& functions, const Limits& limits,
-                std::span<const double> x) {
+                std::span<const ValueRange> ranges, std::span<const double> x) {
+  const ScaledSample moved = within_ranges(ranges, x);
   MixSums sums;
   std::size_t left = functions.size();
   for_each(functions, [&](double share, const SvrFunction& function) {
-    sums.add(share, std::clamp(function(x), limits.low, limits.high), --left == 0);
+    sums.add(share, std::clamp(function(as_span(moved)), limits.low, limits.high), --left == 0);
   });
   return sums.mean - shrinkage_of(sums, limits.caution).by;
 }
 
 template <typename WeightedFunctions>
 double value_and_gradient(const WeightedFunctions& functions, const Limits& limits,
-                          std::span<const double> x, std::span<double> gradient) {
+                          std::span<const ValueRange> ranges, std::span<const double> x,
+                          std::span<double> gradient) {
+  const ScaledSample moved = within_ranges(ranges, x);
   using Slopes = std::array<double, kMostInputs + kMostTerms>;
   Slopes slopes{};
   Slopes spread_slopes{};  // Σ s_k (f_k − f_0) ∇f_k of all functions but the last
@@ -100,7 +114,7 @@ double value_and_gradient(const WeightedFunctions& functions, const Limits& limi
   double last_share = 0.0;
   for_each(functions, [&](double share, const SvrFunction& function) {
     const bool is_last = --left == 0;
-    const double free = function.with_gradient(x, own);
+    const double free = function.with_gradient(as_span(moved), own);
     const double value = std::clamp(free, limits.low, limits.high);
     sums.add(share, value, is_last);
     if (free <= limits.low || free >= limits.high) {
@@ -122,20 +136,11 @@ double value_and_gradient(const WeightedFunctions& functions, const Limits& limi
   for (std::size_t k = 0; k < x.size(); ++k) {
     gradient[k] = of_gradient * gradient[k] - d2 * by_spread[k] + of_last * by_last[k];
   }
+  flatten_beyond(ranges, x, gradient);
   return sums.mean - shrinkage.by;
 }
 
 }  // namespace
-
-double mixed_value(std::span<const WeightedFunction> functions, const Limits& limits,
-                   std::span<const double> x) {
-  return value_of(functions, limits, x);
-}
-
-double mixed_value_with_gradient(std::span<const WeightedFunction> functions, const Limits& limits,
-                                 std::span<const double> x, std::span<double> gradient) {
-  return value_and_gradient(functions, limits, x, gradient);
-}
 
 ScaledSample within_ranges(std::span<const ValueRange> ranges, std::span<const double> x) {
   ScaledSample moved(x.size());
@@ -147,25 +152,23 @@ ScaledSample within_ranges(std::span<const ValueRange> ranges, std::span<const d
   return moved;
 }
 
-void flatten_beyond(std::span<const ValueRange> ranges, std::span<const double> x,
-                    std::span<double> gradient) {
-  const std::size_t first = x.size() - ranges.size();
-  for (std::size_t k = 0; k < ranges.size(); ++k) {
-    if (x[first + k] < ranges[k].low || x[first + k] > ranges[k].high) {
-      gradient[first + k] = 0.0;
-    }
-  }
+double mixed_value(std::span<const WeightedFunction> functions, const Limits& limits,
+                   std::span<const ValueRange> ranges, std::span<const double> x) {
+  return value_of(functions, limits, ranges, x);
+}
+
+double mixed_value_with_gradient(std::span<const WeightedFunction> functions, const Limits& limits,
+                                 std::span<const ValueRange> ranges, std::span<const double> x,
+                                 std::span<double> gradient) {
+  return value_and_gradient(functions, limits, ranges, x, gradient);
 }
 
 double FunctionMix::operator()(std::span<const double> x) const {
-  return value_of(members, limits, as_span(within_ranges(term_ranges, x)));
+  return value_of(members, limits, term_ranges, x);
 }
 
 double FunctionMix::with_gradient(std::span<const double> x, std::span<double> gradient) const {
-  const double value =
-      value_and_gradient(members, limits, as_span(within_ranges(term_ranges, x)), gradient);
-  flatten_beyond(term_ranges, x, gradient);
-  return value;
+  return value_and_gradient(members, limits, term_ranges, x, gradient);
 }
 
 double FunctionMix::term_weight(std::size_t k) const {

@@ -29,20 +29,16 @@ struct ValueRange {
 /// ranges.size() numbers of x. Requires x.size() <= kMostInputs + kMostTerms. Allocates nothing.
 ScaledSample within_ranges(std::span<const ValueRange> ranges, std::span<const double> x);
 
-/// Sets the slopes of terms beyond their ranges to 0 in a gradient by z and φ at
-/// within_ranges(ranges, x).
-void flatten_beyond(std::span<const ValueRange> ranges, std::span<const double> x,
-                    std::span<double> gradient);
-
 /// A function and its weight in a weighted mean.
 struct WeightedFunction {
   double share = 1.0;
   const SvrFunction* function = nullptr;
 };
 
-/// The weighted mean of functions, each clamped to the limits, on scaled samples:
+/// The weighted mean of functions, each clamped to the limits, on scaled samples with the terms
+/// within their ranges:
 ///
-///     f = Σ s_k f_k,  f_k = clamp(f_k(x), low, high)
+///     f = Σ s_k f_k,  f_k = clamp(f_k(within_ranges(x)), low, high)
 ///
 /// Where the functions disagree, the mean is shrunk towards the last function, the simplest. With
 /// the variance D² of all functions but the last, weighted by their shares, and g = f − f_last:
@@ -54,14 +50,16 @@ struct WeightedFunction {
 /// Requires shares with the sum 1. Cost: the sum over the functions. Allocates nothing; safe from
 /// many threads.
 double mixed_value(std::span<const WeightedFunction> functions, const Limits& limits,
-                   std::span<const double> x);
+                   std::span<const ValueRange> ranges, std::span<const double> x);
 
 /// mixed_value(), equal to rounding, and its gradient by z and φ; beyond the limits a function has
-/// the slope 0. Requires finite x and room for x.size() <= kMostInputs + kMostTerms values.
+/// the slope 0, as has the mean by a term beyond the term's range. Requires finite x and room for
+/// x.size() <= kMostInputs + kMostTerms values.
 double mixed_value_with_gradient(std::span<const WeightedFunction> functions, const Limits& limits,
-                                 std::span<const double> x, std::span<double> gradient);
+                                 std::span<const ValueRange> ranges, std::span<const double> x,
+                                 std::span<double> gradient);
 
-/// A weighted mean of functions, with copies of the functions, of terms within their ranges.
+/// A weighted mean of functions, with copies of the functions.
 struct FunctionMix {
   /// A function with name and weight.
   struct Member {
@@ -74,8 +72,8 @@ struct FunctionMix {
   Limits limits{};
   std::vector<ValueRange> term_ranges{};  ///< one per physics term; empty: unlimited
 
-  double operator()(std::span<const double> x) const;  ///< mixed_value(within_ranges())
-  /// mixed_value_with_gradient(); beyond the range of a term the slope by the term is 0.
+  double operator()(std::span<const double> x) const;  ///< mixed_value()
+  /// mixed_value_with_gradient()
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
   /// The range of a physics term.

@@ -75,7 +75,7 @@ inline AxisScaling random_scaling(RandomStream& random, const ModelShape& shape,
   return scaling;
 }
 
-/// A function of this shape that nobody learned.
+/// A function of this shape with random numbers.
 inline SvrFunction random_function(RandomStream& random, const ModelShape& shape,
                                    std::size_t terms) {
   const KernelWeights weights{random.uniform(0.1, 1.0), random.uniform(0.0, 0.5), 0.1};
@@ -109,7 +109,7 @@ inline KnownPlaces random_places(RandomStream& random, std::size_t inputs, std::
   return known;
 }
 
-/// A model of this shape that nobody learned: a committee of two.
+/// A model of this shape with random numbers: a committee of two.
 inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) {
   const std::size_t axes = shape.targets.size();
   TrainedModel model{shape.inputs,
