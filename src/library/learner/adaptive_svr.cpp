@@ -72,7 +72,7 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
     if (task_ != SliceTask::recall) {
-      past_models_.observe(z, y, error, t);
+      past_models_.observe(z, y, std::abs(error), t);
     }
     measure_misfit();
     if (task_ == SliceTask::none) {
@@ -372,7 +372,7 @@ double AdaptiveSvr::error_without_short_range(std::size_t learner, std::span<con
                                               double y) const {
   const OnlineSvr& svr = learners_[learner];
   const bool known = svr.ready() && z.size() == svr.model().kernel().dimension();
-  return known ? std::abs(y - change_[learner](z) - svr.model().without_short_range(z)) : 0.0;
+  return known ? y - change_[learner](z) - svr.model().without_short_range(z) : 0.0;
 }
 
 }  // namespace kelpie

@@ -3,15 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include "learner/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-// All in usual misfits.
-
-}  // namespace
-
 Suspicion ChangeDetector::inspect(const Errors& errors, double misfit, double t) {
   return trying_ ? compare(errors) : watch(errors.champion, misfit, t);
 }
@@ -23,12 +18,14 @@ void ChangeDetector::visit(Archive& archive) {
   archive.part("alarm", alarm_);
   archive.number(lead_);
   archive.number(over_all_);
+  archive.number(over_offset_);
+  archive.number(mean_error_);
   archive.number(misfit_);
   archive.whole(age_);
 }
 
 Suspicion ChangeDetector::watch(double champion, double misfit, double t) {
-  if (!std::isfinite(misfit) || !alarm_.watch(champion / misfit, t)) {
+  if (!std::isfinite(misfit) || !alarm_.watch(std::abs(champion) / misfit, t)) {
     return Suspicion::none;
   }
   start(misfit, false);
@@ -42,6 +39,8 @@ void ChangeDetector::start(double misfit, bool probation) {
   misfit_ = misfit;
   lead_ = 0.0;
   over_all_ = 0.0;
+  over_offset_ = 0.0;
+  mean_error_ = 0.0;
   age_ = 0;
 }
 
@@ -55,22 +54,30 @@ void ChangeDetector::dismiss() {
   alarm_.reset();
 }
 
+void ChangeDetector::count_leads(const Errors& errors) {
+  const double most = kOnline.alarm.clip * misfit_;
+  const double own = std::min(std::abs(*errors.challenger), most);
+  const auto lead = [&](double error) {
+    return (std::min(std::abs(error), most) - own) / misfit_ - kOnline.change.margin;
+  };
+  lead_ += lead(errors.champion);
+  over_all_ += lead(errors.all);
+  over_offset_ += lead(errors.champion - mean_error_);
+}
+
 Suspicion ChangeDetector::compare(const Errors& errors) {
   ++age_;
   if (errors.challenger && (probation_ || age_ > kOnline.change.burn_in)) {
-    const double most = kOnline.alarm.clip * misfit_;
-    const auto lead = [&](double error) {
-      return (std::min(error, most) - std::min(*errors.challenger, most)) / misfit_ -
-             kOnline.change.margin;
-    };
-    lead_ += lead(errors.champion);
-    over_all_ += lead(errors.all);
+    count_leads(errors);
   }
+  const double most = kOnline.alarm.clip * misfit_;
+  mean_error_ += std::clamp(errors.champion - mean_error_, -most, most) / age_;
   if (probation_) {
     lead_ = std::max(lead_, 0.0);
   }
   const double enough = expects_ ? kOnline.change.expected_win : kOnline.change.win;
-  const bool won = lead_ > enough && (probation_ || over_all_ > enough / 2.0);
+  const bool won =
+      lead_ > enough && (probation_ || std::min(over_all_, over_offset_) > enough / 2.0);
   if (!won && lead_ >= kOnline.change.loss && age_ < kOnline.change.patience) {
     return Suspicion::none;
   }

@@ -25,11 +25,13 @@ enum class Suspicion : std::uint8_t {
 /// moment and without older samples, is then compared with the model one step ahead. In a new
 /// region old samples are still valid, and the model adapts as fast as the challenger. After a
 /// change old samples are wrong, and the challenger is better by more than half a usual misfit per
-/// sample. In a committee the challenger has to be ahead of the committee as well, by half as much:
-/// a vehicle with small errors of the committee has not changed. Allocates nothing.
+/// sample. The challenger has to be ahead of two more, by half as much: of the committee, since a
+/// vehicle with small errors of the committee has not changed; and of the model plus the mean error
+/// since the suspicion, since a slow disturbance or the offset of a sensor is no change of the
+/// vehicle, and a model without a past follows both. Allocates nothing.
 class ChangeDetector {
  public:
-  /// The errors |y − f(x)| of one sample before learning.
+  /// The errors y − f(x) of one sample before learning.
   struct Errors {
     double champion = 0.0;
     /// Given if the challenger has a model and the sample's place is new to the challenger
@@ -66,16 +68,19 @@ class ChangeDetector {
  private:
   Suspicion watch(double champion, double misfit, double t);
   Suspicion compare(const Errors& errors);
+  void count_leads(const Errors& errors);
   void start(double misfit, bool probation);
 
   bool trying_ = false;
   bool probation_ = false;
   bool expects_ = false;  ///< of a change: half of the evidence is enough
   ErrorAlarm alarm_{kOnline.change.alarm};
-  double lead_ = 0.0;      ///< sum of the challenger's advantages [usual misfits]
-  double over_all_ = 0.0;  ///< the same over the committee
-  double misfit_ = 0.0;    ///< the usual misfit at the suspicion
-  int age_ = 0;            ///< samples of the comparison
+  double lead_ = 0.0;         ///< sum of the challenger's advantages [usual misfits]
+  double over_all_ = 0.0;     ///< the same over the committee
+  double over_offset_ = 0.0;  ///< the same over the model plus its mean error
+  double mean_error_ = 0.0;   ///< of the model since the suspicion, steps clipped
+  double misfit_ = 0.0;       ///< the usual misfit at the suspicion
+  int age_ = 0;               ///< samples of the comparison
 };
 
 }  // namespace kelpie

@@ -4,15 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
 #include "learner/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-// Age from which a model that agrees with a past one is the same one, grown.
-
-}  // namespace
-
 PastModels::PastModels(const SampleCollector& buffer, const OnlineSvrSettings& settings)
     : capacity_(settings.past_models()),
       models_(capacity_, PastModel(buffer.kernel(), buffer.samples().capacity())),

@@ -112,6 +112,24 @@ TEST(ModelChange, IsWithdrawnWhereTheVehicleIsAsBefore) {
   }
 }
 
+// The sensor's offset is not the vehicle's: nothing that was learned is wrong.
+TEST(ModelChange, AnOffsetOfTheSensorIsNoChange) {
+  PlanarDrive drive;
+  drive.drive(1, 2'400, kStep);
+  RandomStream noise(5, "noise");
+  for (std::size_t i = 0; i < drive.y.size(); ++i) {
+    for (double& value : drive.y[i]) {
+      value += (i < 1'200 ? 0.0 : 0.2) + 0.02 * noise.normal();
+    }
+  }
+  const DynamicsModel model = learn(drive, ModelSettings::from_preset("default", 2));
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    EXPECT_GE(model.axis(axis).status().tally.suspicions, 1) << axis;
+    EXPECT_EQ(model.axis(axis).status().tally.changes, 0) << axis;
+  }
+  EXPECT_GT(r_squared(model, 1, 1.0), 0.5);
+}
+
 TEST(ModelChange, ContinuesFromASavedStateInTheMiddleOfAChange) {
   const PlanarDrive drive = drive_and_lose_half_a_thruster(300);
   DynamicsModel whole(drive.inputs, drive.targets, settings());
