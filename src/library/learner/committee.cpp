@@ -94,7 +94,7 @@ Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSetti
       to_learn_(plan.alone ? 0 : settings.places()),
       sample_(inputs + terms) {
   if (!plan.alone) {
-    limit_terms(terms);
+    seen_terms_ = SeenTermRanges(terms);
     fits_.emplace(inputs, terms, plan.line, settings);
     for (std::size_t k = 0; k < kMembers; ++k) {
       frozen_copies_.push_back(function(k));
@@ -108,8 +108,7 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
                     (inputs + terms) * sizeof(double);
   if (!plan.alone) {
     const std::size_t places = settings.places();
-    sum += terms * (sizeof(SeenRange) + sizeof(ValueRange));
-    sum += places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
+    sum += SeenTermRanges::bytes(terms) + places * sizeof(std::uint64_t) + sizeof(SvrFunction) +
            SvrFunction::bytes(inputs, terms, places);
     for (const SparseRegressionSettings& fit :
          {precise_settings(inputs, terms, settings), memory_settings(inputs, terms, settings),
@@ -156,24 +155,15 @@ Decision Committee::update(std::span<const double> z, double y, double t) {
   return decision;
 }
 
-void Committee::limit_terms(std::size_t terms) {
-  seen_terms_.resize(terms, SeenRange(kOnline.range.term_margin));
-  term_ranges_.resize(terms);
-}
-
 void Committee::see(std::span<const double> z, double y) {
   seen_.add(y);
-  const std::span<const double> terms = z.last(seen_terms_.size());
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    seen_terms_[k].add(terms[k]);
-    term_ranges_[k] = seen_terms_[k].range();
-  }
+  seen_terms_.add(z);
 }
 
 // By what every member said before it had learned the block that the sample is of.
 void Committee::score(std::span<const double> z, double y) {
   const auto [low, high] = seen_.range();
-  const ScaledSample moved = within_ranges(term_ranges_, z);
+  const ScaledSample moved = within_ranges(seen_terms_.ranges(), z);
   std::array<double, kMembers> errors{};
   for (std::size_t k = 0; k < kMembers; ++k) {
     errors[k] = std::abs(y - std::clamp(frozen_copies_[k](as_span(moved)), low, high));
@@ -209,7 +199,7 @@ void Committee::reset_for_new_vehicle() {
 
 void Committee::relearn_buffer(int rounds) {
   seen_.clear();
-  std::ranges::for_each(seen_terms_, &SeenRange::clear);
+  seen_terms_.clear();
   const SampleCollector& buffer = learner_.champion().buffer();
   for (std::size_t i = 0; i < buffer.size(); ++i) {
     const double y = take_from_buffer(i);
@@ -278,11 +268,7 @@ void Committee::resume_from(const FunctionMix& said, const PastModel::Completion
   }
   shares_.resume_from(shares);
   seen_.resume_from({said.limits.low, said.limits.high});
-  limit_terms(said.term_ranges.size());
-  for (std::size_t k = 0; k < said.term_ranges.size(); ++k) {
-    term_ranges_[k] = said.term_ranges[k];
-    seen_terms_[k].resume_from(term_ranges_[k]);
-  }
+  seen_terms_.resume_from(said.term_ranges);
   freeze_copies();
 }
 
@@ -308,7 +294,7 @@ double Committee::predict(std::span<const double> z) const {
   WeightedFunctions room;
   return alone() || !learner_.champion().ready()
              ? learner_.predict(z)
-             : mixed_value(weighted_functions(room), limits(), term_ranges_, z);
+             : mixed_value(weighted_functions(room), limits(), seen_terms_.ranges(), z);
 }
 
 // What the learner's fine part adds to the weighted mean.
@@ -316,7 +302,7 @@ double Committee::short_range_part(std::span<const double> x) const {
   const auto bounded = [seen = seen_.range()](double said) {
     return std::clamp(said, seen.low, seen.high);
   };
-  const ScaledSample moved = within_ranges(term_ranges_, x);
+  const ScaledSample moved = within_ranges(seen_terms_.ranges(), x);
   const std::span<const double> z = as_span(moved);
   const SvrFunction& model = learner_.model();
   return learner_.champion().ready()
@@ -326,7 +312,8 @@ double Committee::short_range_part(std::span<const double> x) const {
 
 double Committee::with_gradient(std::span<const double> z, std::span<double> gradient) const {
   WeightedFunctions room;
-  return mixed_value_with_gradient(weighted_functions(room), limits(), term_ranges_, z, gradient);
+  return mixed_value_with_gradient(weighted_functions(room), limits(), seen_terms_.ranges(), z,
+                                   gradient);
 }
 
 std::vector<MemberShare> Committee::members() const {
@@ -339,7 +326,7 @@ std::vector<MemberShare> Committee::members() const {
 
 void Committee::refresh(FunctionMix& copies) const {
   copies.limits = limits();
-  copies.term_ranges = term_ranges_;
+  copies.term_ranges = seen_terms_.ranges();
   for (std::size_t k = 0; k < copies.members.size(); ++k) {
     copies.members[k].share = shares_.shares()[k];
     copies.members[k].function.assign(function(k));
@@ -347,7 +334,7 @@ void Committee::refresh(FunctionMix& copies) const {
 }
 
 FunctionMix Committee::function_mix() const {
-  FunctionMix copies{.members = {}, .limits = limits(), .term_ranges = term_ranges_};
+  FunctionMix copies{.members = {}, .limits = limits(), .term_ranges = seen_terms_.ranges()};
   for (std::size_t k = 0; k < shares_.shares().size(); ++k) {
     copies.members.push_back({std::string(kNames[k]), shares_.shares()[k], function(k)});
   }
@@ -389,10 +376,7 @@ void Committee::rescale_fits(const SampleMap& map) {
   const SampleCollector& buffer = learner_.champion().buffer();
   const auto factors = std::span<const double>(sample_).subspan(buffer.kernel().inputs());
   seen_.rescale(gain, offset);
-  for (std::size_t k = 0; k < seen_terms_.size(); ++k) {
-    seen_terms_[k].rescale(factors[k], 0.0);
-    term_ranges_[k] = seen_terms_[k].range();
-  }
+  seen_terms_.rescale(factors);
   const auto all = fits_->all();
   const std::span<SparseRegression* const> fits(all);
   std::ranges::for_each(fits.first(Fits::kWithKernels), &SparseRegression::clear);
@@ -409,7 +393,7 @@ void Committee::expect(std::span<const double> weights) {
     return;
   }
   fits_->line.expect(weights, kOnline.members.nominal_known);
-  limit_terms(0);
+  seen_terms_ = SeenTermRanges();
   std::vector<double> shares = first_shares(false);
   as_vector(shares) *= 1.0 - kOnline.members.nominal_share;
   shares[kLine] += kOnline.members.nominal_share;
@@ -471,14 +455,7 @@ void Committee::visit(Archive& archive) {
   archive.flag(kernels_only_);
   archive.part("shares", shares_);
   archive.part("seen", seen_);
-  std::size_t limited = seen_terms_.size();
-  archive.whole(limited);
-  archive.require(limited == 0 || limited == seen_terms_.size(), "limits of other terms");
-  limit_terms(limited);
-  for (std::size_t k = 0; k < limited; ++k) {
-    archive.part("seen term", seen_terms_[k]);
-    term_ranges_[k] = seen_terms_[k].range();
-  }
+  archive.part("seen terms", seen_terms_);
 }
 
 LearnerState state_of(const Committee& committee) {

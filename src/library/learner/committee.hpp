@@ -147,7 +147,6 @@ class Committee final : public OnlineRegressor {
   bool alone() const { return !fits_; }
   Limits limits() const;
   void see(std::span<const double> z, double y);
-  void limit_terms(std::size_t terms);
   const SvrFunction& function(std::size_t member) const;
   std::span<const WeightedFunction> weighted_functions(WeightedFunctions& room) const;
   double short_range_part(std::span<const double> z) const;
@@ -167,9 +166,8 @@ class Committee final : public OnlineRegressor {
   std::optional<Fits> fits_;                ///< empty: the learner is alone
   std::vector<SvrFunction> frozen_copies_;  ///< every member's model at the start of the block
   MemberShares shares_;
-  SeenRange seen_;                       ///< targets
-  std::vector<SeenRange> seen_terms_;    ///< none: alone, or known beforehand
-  std::vector<ValueRange> term_ranges_;  ///< of seen_terms_
+  SeenRange seen_;              ///< targets
+  SeenTermRanges seen_terms_;   ///< empty: alone, or known beforehand
   Relearning to_learn_;         ///< the buffer's samples that the fits have still to relearn
   bool kernels_only_ = false;   ///< these fits are `precise` and `memory`
   std::vector<double> sample_;  ///< scratch

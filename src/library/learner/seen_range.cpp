@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
 #include "learner/tuning.hpp"
 
 namespace kelpie {
@@ -61,6 +62,58 @@ void SeenRange::visit(Archive& archive) {
   archive.numbers(least_);
   archive.numbers(greatest_);
   archive.whole(count_);
+}
+
+SeenTermRanges::SeenTermRanges(std::size_t terms) {
+  resize(terms);
+}
+
+void SeenTermRanges::resize(std::size_t terms) {
+  seen_.resize(terms, SeenRange(kOnline.range.term_margin));
+  ranges_.resize(terms);
+}
+
+void SeenTermRanges::measure() {
+  std::ranges::transform(seen_, ranges_.begin(), &SeenRange::range);
+}
+
+void SeenTermRanges::add(std::span<const double> z) {
+  const std::span<const double> terms = z.last(seen_.size());
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    seen_[k].add(terms[k]);
+  }
+  measure();
+}
+
+void SeenTermRanges::resume_from(std::span<const ValueRange> ranges) {
+  resize(ranges.size());
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    seen_[k].resume_from(ranges[k]);
+    ranges_[k] = ranges[k];
+  }
+}
+
+void SeenTermRanges::rescale(std::span<const double> factors) {
+  for (std::size_t k = 0; k < seen_.size(); ++k) {
+    seen_[k].rescale(factors[k], 0.0);
+  }
+  measure();
+}
+
+void SeenTermRanges::clear() {
+  std::ranges::for_each(seen_, &SeenRange::clear);
+  measure();
+}
+
+void SeenTermRanges::visit(Archive& archive) {
+  std::size_t terms = seen_.size();
+  archive.whole(terms);
+  archive.require(terms == 0 || terms == seen_.size(), "limits of other terms");
+  resize(terms);
+  for (SeenRange& seen : seen_) {
+    archive.part("seen term", seen);
+  }
+  measure();
 }
 
 }  // namespace kelpie

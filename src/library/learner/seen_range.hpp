@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
+#include <vector>
 
 #include "kelpie/core/archive.hpp"
 #include "svr/function_mix.hpp"
@@ -39,6 +41,41 @@ class SeenRange {
   std::array<double, kEnds> least_{};     ///< ascending
   std::array<double, kEnds> greatest_{};  ///< descending
   std::size_t count_ = 0;
+};
+
+/// The ranges of the seen values of all physics terms of a sample, or of none where terms have no
+/// limits. Adding allocates nothing.
+class SeenTermRanges {
+ public:
+  explicit SeenTermRanges(std::size_t terms = 0);
+
+  /// The ranges, in the order of the terms; empty: no limits. Valid until the next other call.
+  const std::vector<ValueRange>& ranges() const { return ranges_; }
+
+  /// Adds the terms of a sample `z`, the last numbers of z. Requires no NaN.
+  void add(std::span<const double> z);
+
+  /// SeenRange::resume_from() for every term. Allocates.
+  void resume_from(std::span<const ValueRange> ranges);
+
+  /// Every term becomes factor · term. Requires a factor > 0 per term.
+  void rescale(std::span<const double> factors);
+
+  void clear();  ///< Forgets the values.
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+  /// Memory in bytes, beside the object itself.
+  static std::size_t bytes(std::size_t terms) {
+    return terms * (sizeof(SeenRange) + sizeof(ValueRange));
+  }
+
+ private:
+  void resize(std::size_t terms);
+  void measure();
+
+  std::vector<SeenRange> seen_;
+  std::vector<ValueRange> ranges_;  ///< of seen_
 };
 
 }  // namespace kelpie

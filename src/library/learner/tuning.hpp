@@ -106,11 +106,11 @@ struct OnlineTuning {
     double slope_clip = 3.0;    ///< largest value of one sample [standard deviations]
   } shares;
 
-  /// SeenRange: by hand.
+  /// SeenRange.
   struct Range {
-    double margin = 0.1;        ///< of targets, added on either side, of the width
-    double term_margin = 0.5;   ///< of physics terms, the same; docs/method/committee.md
-    double early_margin = 1.0;  ///< the same for few targets [standard deviations]
+    double margin = 0.1;        ///< of targets, added on either side, of the width: by hand
+    double term_margin = 0.5;   ///< of physics terms, the same: docs/method/committee.md
+    double early_margin = 1.0;  ///< the same for few targets [standard deviations]: by hand
   } range;
 
   /// Disturbance; docs/method/uncertainty.md: training rows, of little influence.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "kelpie/core/random.hpp"
@@ -57,6 +58,25 @@ TEST(SeenRange, ARestoredRangeIsTheSameAndGrows) {
     seen.add(4.0);
   }
   EXPECT_DOUBLE_EQ(seen.range().high, 4.0 + 0.5 * 5.0);
+}
+
+// Terms stand last in a sample; an empty set has no limits.
+TEST(SeenTermRanges, FollowTheTermsOfSamplesAndTheirScale) {
+  SeenTermRanges seen(2);
+  for (int i = 0; i <= 100; ++i) {
+    seen.add(std::array{1e6, 0.01 * i, -1.0 + 0.02 * i});
+  }
+  EXPECT_NEAR(seen.ranges()[0].low, -0.5, 0.05);
+  EXPECT_NEAR(seen.ranges()[1].high, 2.0, 0.1);
+  SeenTermRanges restored;
+  EXPECT_TRUE(restored.ranges().empty());
+  restored.add(std::array{1e6, 1.0, 2.0});
+  restored.resume_from(seen.ranges());
+  restored.rescale(std::array{10.0, 1.0});
+  EXPECT_NEAR(restored.ranges()[0].low, 10.0 * seen.ranges()[0].low, 1e-12);
+  EXPECT_NEAR(restored.ranges()[1].high, seen.ranges()[1].high, 1e-12);
+  restored.clear();
+  EXPECT_TRUE(std::isinf(restored.ranges()[0].high));
 }
 
 }  // namespace
