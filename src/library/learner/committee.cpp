@@ -298,15 +298,16 @@ double Committee::predict(std::span<const double> z) const {
 }
 
 // What the learner's fine part adds to the weighted mean.
-double Committee::short_range_part(std::span<const double> x) const {
+double Committee::short_range_part(std::span<const double> z) const {
   const auto bounded = [seen = seen_.range()](double said) {
     return std::clamp(said, seen.low, seen.high);
   };
-  const ScaledSample moved = within_ranges(seen_terms_.ranges(), x);
-  const std::span<const double> z = as_span(moved);
+  const ScaledSample moved = within_ranges(seen_terms_.ranges(), z);
+  const std::span<const double> limited = as_span(moved);
   const SvrFunction& model = learner_.model();
   return learner_.champion().ready()
-             ? shares_.shares()[0] * (bounded(model(z)) - bounded(model.without_short_range(z)))
+             ? shares_.shares()[0] *
+                   (bounded(model(limited)) - bounded(model.without_short_range(limited)))
              : 0.0;
 }
 
