@@ -191,7 +191,7 @@ class Run:
         except FileNotFoundError:
             return 0.0
         found = re.search(key + r":\s+(\d+) kB", status)
-        return int(found[1]) / 1024 if found else 0.0
+        return int(found[1]) * 1024 / 1e6 if found else 0.0
 
     def end(self):
         """The exit code, negative: a signal. None: it doesn't end."""

@@ -168,8 +168,8 @@ def live(kelpie):
         kb = re.search(r"VmRSS:\s*(\d+)", Path(f"/proc/{process.pid}/status").read_text())
         if (status := re.match(r"kelpie: [-\d.]+ s, ([\d,]+) learned", line)) and kb:
             hours = int(status[1].replace(",", "")) / RATE / 3600
-            saved = checkpoint.stat().st_size / 1024**2 if checkpoint.exists() else 0.0
-            sizes.append((hours, int(kb[1]) / 1024, saved))
+            saved = checkpoint.stat().st_size / 1e6 if checkpoint.exists() else 0.0
+            sizes.append((hours, int(kb[1]) * 1024 / 1e6, saved))
     (FOLDER / "live.txt").write_text(text)
     return process.wait(), text, sizes
 
