@@ -133,7 +133,7 @@ class Live:
         while self.process.poll() is None:
             try:
                 status = Path(f"/proc/{self.process.pid}/status").read_text()
-                self.peak_mb = int(re.search(r"VmHWM:\s+(\d+)", status)[1]) / 1024
+                self.peak_mb = int(re.search(r"VmHWM:\s+(\d+)", status)[1]) * 1024 / 1e6
             except (OSError, TypeError):
                 pass
             time.sleep(0.02)

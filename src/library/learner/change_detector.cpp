@@ -54,24 +54,24 @@ void ChangeDetector::dismiss() {
   alarm_.reset();
 }
 
-void ChangeDetector::count_leads(const Errors& errors) {
+void ChangeDetector::count(const Errors& errors) {
+  ++age_;
   const double most = kOnline.alarm.clip * misfit_;
-  const double own = std::min(std::abs(*errors.challenger), most);
-  const auto lead = [&](double error) {
-    return (std::min(std::abs(error), most) - own) / misfit_ - kOnline.change.margin;
-  };
-  lead_ += lead(errors.champion);
-  over_all_ += lead(errors.all);
-  over_offset_ += lead(errors.champion - mean_error_);
+  if (errors.challenger && (probation_ || age_ > kOnline.change.burn_in)) {
+    const auto lead = [&](double error) {
+      return (std::min(std::abs(error), most) - std::min(std::abs(*errors.challenger), most)) /
+                 misfit_ -
+             kOnline.change.margin;
+    };
+    lead_ += lead(errors.champion);
+    over_all_ += lead(errors.all);
+    over_offset_ += lead(errors.champion - mean_error_);
+  }
+  mean_error_ += std::clamp(errors.champion - mean_error_, -most, most) / age_;
 }
 
 Suspicion ChangeDetector::compare(const Errors& errors) {
-  ++age_;
-  if (errors.challenger && (probation_ || age_ > kOnline.change.burn_in)) {
-    count_leads(errors);
-  }
-  const double most = kOnline.alarm.clip * misfit_;
-  mean_error_ += std::clamp(errors.champion - mean_error_, -most, most) / age_;
+  count(errors);
   if (probation_) {
     lead_ = std::max(lead_, 0.0);
   }

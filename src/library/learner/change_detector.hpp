@@ -68,7 +68,7 @@ class ChangeDetector {
  private:
   Suspicion watch(double champion, double misfit, double t);
   Suspicion compare(const Errors& errors);
-  void count_leads(const Errors& errors);
+  void count(const Errors& errors);
   void start(double misfit, bool probation);
 
   bool trying_ = false;
