@@ -65,7 +65,7 @@ double authority_error_of(const Diagnosis& diagnosis, const DiagnosisCase& of) {
 class Seed {
  public:
   Seed(const DiagnosisPlan& plan, std::uint64_t seed)
-      : plan_(plan), scenario_(plan.scenario), diagnosis_(fresh_diagnosis()) {
+      : scenario_(plan.scenario), diagnosis_(fresh_diagnosis()) {
     RandomStream stream(seed, "diagnosis/change");
     change_s_ = plan.before_s + std::floor(stream.uniform(0.0, 60.0));
     scenario_.seed = seed;
@@ -99,7 +99,6 @@ class Seed {
   }
 
  private:
-  const DiagnosisPlan& plan_;
   vehicle::Scenario scenario_;
   Diagnosis diagnosis_;
   double change_s_ = 0.0;

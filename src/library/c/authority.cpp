@@ -43,7 +43,7 @@ kelpie_status kelpie_authority_create(const kelpie_model* model, const char* con
       ranges.push_back({kelpie::place_of(*model, thrusters[i]), least[i], most[i]});
     }
     auto made = std::make_unique<kelpie_authority>(
-        kelpie_authority{kelpie::Authority(*diagnosis, std::move(ranges)), {}});
+        kelpie_authority{kelpie::Authority(*diagnosis, ranges), {}});
     made->text = made->authority.text({model->inputs, model->targets});
     *authority = made.release();
   });

@@ -9,6 +9,7 @@
 #include "core/eigen.hpp"
 #include "core/normal_equations.hpp"
 #include "core/quantile.hpp"
+#include "kelpie/core/scaling.hpp"
 #include "motion/cause_ranking.hpp"
 #include "motion/coefficient_monitor.hpp"
 #include "motion/standstill.hpp"
