@@ -16,9 +16,10 @@ namespace kelpie::lab {
 
 /// A change of the simulated vehicle, and the expected diagnosis.
 struct DiagnosisCase {
-  std::string name;      ///< without the strength: "thruster th1"
-  int effect = 0;        ///< strength in percent; 0: without strength
-  bool special = false;  ///< two causes, or a load off the centre: not a target of issue 20's table
+  std::string name;  ///< without the strength: "thruster th1"
+  int effect = 0;    ///< strength in percent; 0: without strength
+  bool special =
+      false;  ///< two causes, or a load off the centre: not in the table of single causes
   vehicle::Configuration configuration;
   std::vector<Cause> truth;  ///< one or two; intervals unused
 };

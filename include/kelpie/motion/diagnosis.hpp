@@ -73,7 +73,7 @@ struct Finding {
 ///     for (const Finding& finding : diagnosis.findings()) ...
 ///
 /// Fixed memory; allocates at construction and copy only. Cost: O(terms²) per row, and O(terms³) in
-/// some rows of each block of ten.
+/// some rows of each block.
 class Diagnosis {
  public:
   static constexpr std::size_t kUnknownAxis = 6;  ///< for `body_axes`

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "c/guarded.hpp"
 #include "c/handle.hpp"
+#include "kelpie/core/error.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 
 struct kelpie_authority {
@@ -37,7 +37,9 @@ kelpie_status kelpie_authority_create(const kelpie_model* model, const char* con
     kelpie::require_pointer("most", most);
     kelpie::require_pointer("authority", authority);
     const kelpie::Diagnosis* const diagnosis = model->model().diagnosis();
-    kelpie::require(diagnosis != nullptr, "model", "doesn't know its velocities (states)");
+    if (diagnosis == nullptr) {
+      throw kelpie::InputError("model", "doesn't know its velocities (states)");
+    }
     std::vector<kelpie::CommandRange> ranges;
     for (std::size_t i = 0; i < count; ++i) {
       ranges.push_back({kelpie::place_of(*model, thrusters[i]), least[i], most[i]});

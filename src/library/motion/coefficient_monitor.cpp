@@ -14,6 +14,7 @@ namespace {
 
 constexpr auto kWindows = kDiagnosis.windows;
 static_assert(kWindows.back() == CoefficientMonitor::kBlocks);
+static_assert(kWindows.size() <= static_cast<std::size_t>(kDiagnosis.block_rows));  // one per row
 
 }  // namespace
 
@@ -37,10 +38,13 @@ CoefficientMonitor::CoefficientMonitor(std::size_t inputs, std::span<const std::
 }
 
 bool CoefficientMonitor::ready() const {
-  return reference_.rows() >= kDiagnosis.reference_rows;
+  const double least = kDiagnosis.rows_per_term * static_cast<double>(terms_.size());
+  const double enough = std::max(kDiagnosis.reference_s * rate_hz_, least);
+  return reference_.rows() >= std::min(enough, kDiagnosis.reference_rows);
 }
 
-void CoefficientMonitor::insert(const NormalEquations& block, double start_s) {
+void CoefficientMonitor::insert(const NormalEquations& block, double start_s, double end_s) {
+  rate_hz_ = (block.rows() - 1.0) / (end_s - start_s);
   if (kept_ == kBlocks) {
     absorb_oldest();
   }
@@ -52,7 +56,7 @@ void CoefficientMonitor::insert(const NormalEquations& block, double start_s) {
 }
 
 void CoefficientMonitor::absorb_oldest() {
-  const double most = kDiagnosis.memory_blocks * blocks_[first_].rows();
+  const double most = kDiagnosis.memory_s * rate_hz_;
   if (reference_.rows() > most) {
     reference_.scale(most / reference_.rows());
   }
@@ -207,6 +211,7 @@ void CoefficientMonitor::visit(Archive& archive) {
   archive.part("window", window_sums_);
   archive.whole(first_, 0, kBlocks - 1);
   archive.whole(kept_, 0, kBlocks);
+  archive.number(rate_hz_);
   for (std::size_t i = 0; i < kept_; ++i) {
     archive.part("block", blocks_[(first_ + i) % kBlocks]);
     archive.number(starts_[(first_ + i) % kBlocks]);

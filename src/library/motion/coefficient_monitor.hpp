@@ -31,9 +31,9 @@ class CoefficientMonitor {
 
   bool ready() const;  ///< Whether the reference has enough rows.
 
-  /// Stores the newest block, with its first row at `start_s`, and starts over with the shortest
-  /// window.
-  void insert(const NormalEquations& block, double start_s);
+  /// Stores the newest block, with its first and last rows at these times [s], and starts over with
+  /// the shortest window. Requires two rows or more, and start_s < end_s.
+  void insert(const NormalEquations& block, double start_s, double end_s);
   /// Tests one window, the shortest first. Returns true when all windows are tested and an alarm is
   /// raised; the next call has to be cut() or insert(). Cost: O(terms³).
   bool step();
@@ -84,6 +84,7 @@ class CoefficientMonitor {
   std::vector<NormalEquations> blocks_;  // the oldest at first_
   std::vector<double> starts_;           // times of their first rows
   std::size_t first_ = 0, kept_ = 0;
+  double rate_hz_ = 0.0;       // of the newest block's rows
   std::size_t window_;         // next to be tested
   std::size_t alarm_ = 0;      // window with the largest excess, from 1; 0: no alarm
   double alarm_excess_ = 0.0;  // evidence of this window above its threshold

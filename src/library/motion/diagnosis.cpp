@@ -221,7 +221,7 @@ void Diagnosis::State::close_block(double t) {
     ++inspected_;
     inspect(t);
   } else {
-    monitor_.insert(block_, block_start_);
+    monitor_.insert(block_, block_start_, t);
   }
 }
 

@@ -12,11 +12,13 @@ namespace kelpie {
 /// otherwise; docs/howto/diagnosis.md measures seeds 1 to 20. A block takes 2.5 s at 4 Hz.
 inline constexpr struct DiagnosisTuning {
   // Blocks of rows.
-  double block_rows = 10.0;       ///< [rows] least size of a block
+  double block_rows = 6.0;        ///< [rows] least size of a block: a row per window
   double block_s = 2.25;          ///< [s] least time from the first to the last row
   double outlier_sigmas = 6.0;    ///< [standard deviations] a single row beyond is dropped
-  double reference_rows = 960.0;  ///< [rows] least size of the reference: 4 minutes at 4 Hz
-  double memory_blocks = 1440.0;  ///< [blocks] of the reference: an hour at 4 Hz
+  double reference_s = 240.0;     ///< [s] least length of the reference,
+  double reference_rows = 960.0;  ///< [rows] or this number of rows,
+  double rows_per_term = 10.0;    ///< [rows] and at least so many: by hand
+  double memory_s = 3600.0;       ///< [s] of the reference
 
   // Detection.
   std::array<std::size_t, 6> windows{2, 4, 8, 12, 18, 24};  ///< [blocks]

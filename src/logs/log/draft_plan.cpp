@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -23,6 +24,8 @@
 
 namespace kelpie::log {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Names that mean something else to a log.
 constexpr std::array<std::string_view, 19> kTaken{
@@ -144,8 +147,8 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
 }
 
 void choose_clock(const SignalRates& rates, DraftPlan& plan) {
-  double low = INFINITY;
-  double high = -INFINITY;
+  double low = kInfinity;
+  double high = -kInfinity;
   for (const CandidateColumn& column : rates.used) {
     if (!column.stamps || column.stamps->high_s - column.stamps->low_s > kTuning.widest_stamps_s) {
       return;
@@ -231,7 +234,7 @@ class Planner {
         motors_(motor_outputs(report.autopilot.parameters)),
         is_submarine_(is_submarine(report)) {
     plan_.time = time;
-    plan_.is_of_bag = !(report.topics.size() == 1 && report.topics.front().name.empty());
+    plan_.is_of_bag = report.topics.size() != 1 || !report.topics.front().name.empty();
   }
 
   DraftPlan run() {
@@ -455,7 +458,7 @@ class Planner {
     group.lines.push_back({name, column.name, signal_why(column)});
     used_.push_back(column);
     std::string unit = column.unit;
-    if (const auto found = std::ranges::find(kFactors, column.unit, &UnitFactor::unit);
+    if (const auto* const found = std::ranges::find(kFactors, column.unit, &UnitFactor::unit);
         found != kFactors.end()) {
       unit = found->si;
       plan_.scales.push_back({name, fmt::format("{}", found->factor),
@@ -657,8 +660,8 @@ class Planner {
   }
 
   void tell_motors_at_rest(const Candidate& one) {
-    double low = INFINITY;
-    double high = -INFINITY;
+    double low = kInfinity;
+    double high = -kInfinity;
     for (const CandidateColumn& column : one.columns) {
       if (column.varies()) {
         low = std::min(low, column.low);
@@ -686,8 +689,8 @@ class Planner {
   std::vector<std::string> moving_;    // velocities that are learned
   std::vector<std::string> angles_;    // roll and pitch that are inputs
   std::size_t taken_groups_ = 0;       // of the states
-  double moving_rate_hz_ = INFINITY;
-  double command_rate_hz_ = INFINITY;
+  double moving_rate_hz_ = kInfinity;
+  double command_rate_hz_ = kInfinity;
 };
 
 }  // namespace

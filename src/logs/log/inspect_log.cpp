@@ -16,8 +16,8 @@ namespace kelpie::log {
 namespace {
 
 void measure_times(const std::vector<double>& times, double unit_s, bag::TopicReport& topic) {
-  double first = INFINITY;
-  double last = -INFINITY;
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
   std::size_t rows = 0;
   for (const double time : times) {
     const double t = unit_s * time;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <utility>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/open_loop.hpp"
@@ -32,7 +31,7 @@ std::optional<Authority> authority_of(const DynamicsModel& model) {
     if (ranges.empty()) {
       return std::nullopt;
     }
-    return Authority(*model.diagnosis(), std::move(ranges));
+    return Authority(*model.diagnosis(), ranges);
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -39,6 +39,29 @@ TEST(ModelDiagnosis, NamesTheThrusterByTheLogsClock) {
   EXPECT_EQ(text.substr(0, 12), "n1 gives 50.") << text;
 }
 
+// A quarter of an hour of a healthy vehicle, at any rate: one row per second as in the paper, too.
+TEST(ModelDiagnosis, NamesTheThrusterAtSlowAndFastRates) {
+  for (const double step_s : {1.0, 0.5, 0.05}) {
+    SCOPED_TRACE(step_s);
+    testing::PlanarDrive drive;
+    drive.drive(1, static_cast<std::size_t>(900.0 / step_s), step_s);
+    drive.drive(2, static_cast<std::size_t>(60.0 / step_s), step_s, 0.5);
+    DynamicsModel model(drive.inputs, drive.targets, quick(2));
+    RandomStream noise(3, "noise");
+    for (std::size_t row = 0; row < drive.x.size(); ++row) {
+      for (double& value : drive.y[row]) {
+        value += 1e-3 * noise.normal();
+      }
+      model.update(drive.x[row], drive.y[row], drive.t[row]);
+    }
+    const std::vector<Finding> findings = model.findings();
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_NEAR(findings[0].since_s, 900.0, 8.0);
+    const std::string text = finding_text(findings[0], {drive.inputs, drive.targets});
+    EXPECT_EQ(text.substr(0, 12), "n1 gives 50.") << text;
+  }
+}
+
 TEST(ModelDiagnosis, IsNoneWhereNobodyKnowsWhatAVelocityIs) {
   const DynamicsModel model({"a", "b", "c"}, {"d"}, quick(1));
   EXPECT_EQ(model.diagnosis(), nullptr);

@@ -215,7 +215,7 @@ TEST(Authority, IsThatOfTheDamagedVehicleAMinuteAfterTheChange) {
 
 // A push of the water turns in the body as the vehicle turns, and is none of the known causes.
 TEST(Authority, AChangeWithoutANameTakesNoThrust) {
-  for (const std::uint64_t seed : {40, 41, 42, 43}) {
+  for (const std::uint64_t seed : {40U, 41U, 42U, 43U}) {
     Vehicle vehicle(seed);
     Diagnosis learned = diagnosis();
     vehicle.drive(learned, 600.0);
