@@ -123,6 +123,7 @@ def draw_diagnosis(data):
                    [100.0 * (run["size"] - zero) / (run["truth"] - zero) for run in runs],
                    "osv^D<>"[i % 7], linestyle="none", markersize=4, label=kind)
     finish(sizes, "Sizes of the runs named rightly", "effect [%]", "size told / truth [%]")
+    sizes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
     cases = list(dict.fromkeys(run["case"] for run in data["runs"]))
     words = sorted({run["said"] for run in data["runs"]})
     counts = [[sum(run["case"] == case and run["said"] == word for run in data["runs"])
