@@ -6,13 +6,22 @@
 #include <algorithm>
 #include <optional>
 #include <ranges>
+#include <span>
 
 #include "report/tuning.hpp"
 
 namespace kelpie::report {
 namespace {
 
-// The time of the last named change that enough rows follow.
+// Whether thrusters alone changed and have their nominal thrust: rows of before tell the vehicle.
+bool is_return(const Finding& finding) {
+  return std::ranges::all_of(
+      std::span(finding.causes).first(finding.count), [](const Cause& cause) {
+        return cause.kind == CauseKind::thruster && cause.lower <= 1.0 && cause.upper >= 1.0;
+      });
+}
+
+// The time of the last named change that enough rows follow, unless it is a return.
 std::optional<double> last_change_s(const study::StreamResult& result) {
   if (result.axes.empty() || result.axes.front().one_step.time_s.empty()) {
     return std::nullopt;
@@ -21,8 +30,8 @@ std::optional<double> last_change_s(const study::StreamResult& result) {
   for (const Finding& finding : std::views::reverse(result.diagnosis.findings)) {
     if (finding.state == FindingState::named) {
       const auto since = std::ranges::lower_bound(times, finding.since_s);
-      return times.end() - since >= kTuning.rows_since ? std::optional(finding.since_s)
-                                                       : std::nullopt;
+      const bool enough = times.end() - since >= kTuning.rows_since;
+      return enough && !is_return(finding) ? std::optional(finding.since_s) : std::nullopt;
     }
   }
   return std::nullopt;

@@ -15,7 +15,8 @@ struct NextStep {
 };
 
 /// The commands after `kelpie learn`, of a log and the path of its model; first, where the vehicle
-/// changed and kTuning.rows_since or more rows follow, the command that learns these rows alone.
+/// changed and kTuning.rows_since or more rows follow, the command that learns these rows alone;
+/// not where a thruster is back at its nominal thrust.
 std::vector<NextStep> after_learning(const study::StreamResult& result, const std::string& log,
                                      const std::string& model);
 

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "chart/wording.hpp"
@@ -83,6 +86,29 @@ bool is_named(const study::ChangeFound& change, std::span<const Finding> finding
          });
 }
 
+// Changes without a named cause, a line for all axes with a change of one kind at one time.
+std::vector<std::string> model_lines(const study::StreamResult& result) {
+  using Kind = std::tuple<double, bool, bool>;  // since when, of a past model, taken back
+  std::map<Kind, std::vector<std::string>> axes;
+  for (const study::AxisResult& axis : result.axes) {
+    for (const study::ChangeFound& change : axis.changes) {
+      if (!is_named(change, result.diagnosis.findings)) {
+        axes[{change.since_s, change.recalled > 0, change.withdrawn > 0}].push_back(
+            report::name_of(axis));
+      }
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [kind, names] : axes) {
+    const auto [since_s, recalled, withdrawn] = kind;
+    lines.push_back(fmt::format("since {} s: {} of {} {}{}", chart::time_text(since_s),
+                                recalled ? "a past model" : "another model", join_text(names, ", "),
+                                recalled ? "fits again" : "fits",
+                                withdrawn ? " (taken back later)" : ""));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<std::string> input_lines(const study::StreamResult& result) {
@@ -132,18 +158,7 @@ chart::TextTable quality_table(const study::StreamResult& result) {
 
 std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
   std::vector<std::string> lines = study::diagnosis_lines(result);
-  for (const study::AxisResult& axis : result.axes) {
-    for (const study::ChangeFound& change : axis.changes) {
-      if (is_named(change, result.diagnosis.findings)) {
-        continue;
-      }
-      lines.push_back(fmt::format("since {} s: {} of {} {}{}", chart::time_text(change.since_s),
-                                  change.recalled > 0 ? "a past model" : "another model",
-                                  report::name_of(axis),
-                                  change.recalled > 0 ? "fits again" : "fits",
-                                  change.withdrawn > 0 ? " (taken back later)" : ""));
-    }
-  }
+  std::ranges::move(model_lines(result), std::back_inserter(lines));
   if (lines.empty()) {
     lines.emplace_back(result.diagnosis.why_not.empty() ? "no change of the vehicle was found"
                                                         : "no change of the vehicle was found; "

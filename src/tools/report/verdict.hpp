@@ -20,7 +20,7 @@ std::string verdict_text(const study::StreamResult& result);
 std::vector<std::string> input_lines(const study::StreamResult& result);
 
 /// Changes of the vehicle and since when, at most kTuning.most_changes: named causes first, then
-/// axes with another model for no named cause.
+/// other models for no named cause, the axes of one time in one line.
 std::vector<std::string> vehicle_lines(const study::StreamResult& result);
 
 /// Reasons against any trust in the model: nothing learned, commands without effect.

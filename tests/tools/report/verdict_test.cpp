@@ -89,11 +89,23 @@ TEST(Verdict, WarnsWhereNothingWasLearned) {
 TEST(Verdict, AChangeIsToldAndManyAreCounted) {
   study::StreamResult result = two_axes();
   for (std::size_t i = 0; i < 20; ++i) {
-    result.axes[1].changes.push_back({.samples = i, .time_s = 100.0, .since_s = 90.5});
+    const double since_s = 90.5 + static_cast<double>(i);
+    result.axes[1].changes.push_back({.samples = i, .time_s = 200.0, .since_s = since_s});
   }
   const std::string text = report::verdict_text(result);
   EXPECT_TRUE(has(text, "vehicle: since 90.5 s: another model of " + result.axes[1].name)) << text;
   EXPECT_TRUE(has(text, "vehicle: and 14 more")) << text;
+}
+
+TEST(Verdict, AxesThatChangedTogetherShareALine) {
+  study::StreamResult result = two_axes();
+  result.axes[0].changes = {{.samples = 1, .time_s = 100.0, .since_s = 90.5}};
+  result.axes[1].changes = {{.samples = 1, .time_s = 100.0, .since_s = 90.5},
+                            {.samples = 9, .time_s = 300.0, .since_s = 280.0, .recalled = 1}};
+  const std::string text = report::verdict_text(result);
+  const std::string both = result.axes[0].name + ", " + result.axes[1].name;
+  EXPECT_TRUE(has(text, "vehicle: since 90.5 s: another model of " + both + " fits")) << text;
+  EXPECT_TRUE(has(text, "since 280 s: a past model of " + result.axes[1].name + " fits again"));
 }
 
 TEST(Verdict, ANamedChangeIsToldOnce) {

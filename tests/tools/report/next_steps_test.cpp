@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/next_steps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "report/synthetic.hpp"
+
+namespace kelpie::next_steps_test {
+namespace {
+
+constexpr double kChange = 100.0;  // s
+
+std::string first_command(const Cause& cause) {
+  study::StreamResult result = synthetic::stream(2);
+  for (int row = 0; row < 600; ++row) {
+    result.axes.front().one_step.time_s.push_back(kChange + 0.25 * row);
+  }
+  Finding finding;
+  finding.since_s = kChange;
+  finding.state = FindingState::named;
+  finding.count = 1;
+  finding.causes[0] = cause;
+  result.diagnosis.findings = {finding};
+  return report::after_learning(result, "dive.csv", "model.json").front().command;
+}
+
+TEST(NextSteps, AChangedVehicleIsLearnedAlone) {
+  const std::string command = "kelpie learn dive.csv --since 100 --out out/since";
+  EXPECT_EQ(first_command({CauseKind::thruster, 4, 0.6, 0.55, 0.65}), command);
+  EXPECT_EQ(first_command({CauseKind::drag, 0, 1.02, 0.99, 1.05}), command);
+}
+
+// The rows before the damage are of the same vehicle.
+TEST(NextSteps, AThrusterThatIsBackLeavesNoRowsOut) {
+  EXPECT_EQ(first_command({CauseKind::thruster, 4, 0.99, 0.97, 1.01}),
+            "kelpie rollout dive.csv --model model.json");
+}
+
+}  // namespace
+}  // namespace kelpie::next_steps_test
