@@ -39,8 +39,8 @@ CoefficientMonitor::CoefficientMonitor(std::size_t inputs, std::span<const std::
 
 bool CoefficientMonitor::ready() const {
   const double least = kDiagnosis.rows_per_term * static_cast<double>(terms_.size());
-  const double enough = std::max(kDiagnosis.reference_s * rate_hz_, least);
-  return reference_.rows() >= std::min(enough, kDiagnosis.reference_rows);
+  const double usual = std::min(kDiagnosis.reference_s * rate_hz_, kDiagnosis.reference_rows);
+  return reference_.rows() >= std::max(usual, least);
 }
 
 void CoefficientMonitor::insert(const NormalEquations& block, double start_s, double end_s) {

@@ -15,7 +15,7 @@ inline constexpr struct DiagnosisTuning {
   double block_rows = 6.0;        ///< [rows] least size of a block: a row per window
   double block_s = 2.25;          ///< [s] least time from the first to the last row
   double outlier_sigmas = 6.0;    ///< [standard deviations] a single row beyond is dropped
-  double reference_s = 240.0;     ///< [s] least length of the reference,
+  double reference_s = 240.0;     ///< [s] least length of the reference (from 60, 120, 240),
   double reference_rows = 960.0;  ///< [rows] or this number of rows,
   double rows_per_term = 10.0;    ///< [rows] and at least so many: by hand
   double memory_s = 3600.0;       ///< [s] of the reference
