@@ -37,13 +37,12 @@ wheel='export SOURCE_DATE_EPOCH=$(dpkg-parsechangelog -STimestamp) &&
   KELPIE_PORTABLE=1 KELPIE_BUILD_DIR=build/debian python3 -m pip wheel --no-build-isolation \
     --no-index --no-deps --wheel-dir .. .'
 wanted=(lintian python3-pip patchelf)
-hooks=()
+architectures=$here
 if [ "$architecture" != "$here" ]; then
   build=(dpkg-buildpackage --no-sign -B "-a$architecture" -Pcross,nocheck)
   wanted=(lintian "crossbuild-essential-$architecture")
   wheel=:
-  hooks=(--essential-hook="chroot \"\$1\" dpkg --add-architecture $architecture"
-    --essential-hook='chroot "$1" apt-get update -qq')
+  architectures+=,$architecture
 fi
 dependencies=(apt-get build-dep --yes -qq --no-install-recommends)
 [ "$architecture" = "$here" ] || dependencies+=("-a$architecture" -Pcross,nocheck)
@@ -51,7 +50,7 @@ dependencies=(apt-get build-dep --yes -qq --no-install-recommends)
 echo "Building kelpie $version ($architecture) in a clean root"
 # shellcheck disable=SC2016  # $1 is mmdebstrap's root
 mmdebstrap --quiet --variant=buildd --format=null --dpkgopt=force-unsafe-io \
-  --include="$(IFS=,; echo "${wanted[*]}")" "${hooks[@]}" \
+  --architectures="$architectures" --include="$(IFS=,; echo "${wanted[*]}")" \
   --customize-hook="mkdir -p \"\$1$place\"" \
   --customize-hook="copy-in $source $stage/kelpie_$version.dsc $stage/kelpie_$version.tar.xz $place" \
   --customize-hook="chroot \"\$1\" sh -c 'cd $place/kelpie-$version &&

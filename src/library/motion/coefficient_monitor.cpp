@@ -44,7 +44,8 @@ bool CoefficientMonitor::ready() const {
 }
 
 void CoefficientMonitor::insert(const NormalEquations& block, double start_s, double end_s) {
-  rate_hz_ = (block.rows() - 1.0) / (end_s - start_s);
+  // Of a block without a gap.
+  rate_hz_ = std::max(rate_hz_, (block.rows() - 1.0) / (end_s - start_s));
   if (kept_ == kBlocks) {
     absorb_oldest();
   }

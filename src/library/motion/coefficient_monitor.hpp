@@ -84,7 +84,7 @@ class CoefficientMonitor {
   std::vector<NormalEquations> blocks_;  // the oldest at first_
   std::vector<double> starts_;           // times of their first rows
   std::size_t first_ = 0, kept_ = 0;
-  double rate_hz_ = 0.0;       // of the newest block's rows
+  double rate_hz_ = 0.0;       // the highest of a block's rows
   std::size_t window_;         // next to be tested
   std::size_t alarm_ = 0;      // window with the largest excess, from 1; 0: no alarm
   double alarm_excess_ = 0.0;  // evidence of this window above its threshold

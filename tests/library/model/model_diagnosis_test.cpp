@@ -39,8 +39,11 @@ TEST(ModelDiagnosis, NamesTheThrusterByTheLogsClock) {
   EXPECT_EQ(text.substr(0, 12), "n1 gives 50.") << text;
 }
 
-// A quarter of an hour of a healthy vehicle, at any rate: one row per second as in the paper, too.
+// A quarter of an hour of a healthy vehicle with a pause, at any rate: one row per second as in the
+// paper, too.
 TEST(ModelDiagnosis, NamesTheThrusterAtSlowAndFastRates) {
+  constexpr double kPauseAfter = 840.0;  // s
+  constexpr double kPause = 3600.0;      // s without rows, which forgets nothing
   for (const double step_s : {1.0, 0.5, 0.05}) {
     SCOPED_TRACE(step_s);
     testing::PlanarDrive drive;
@@ -52,11 +55,12 @@ TEST(ModelDiagnosis, NamesTheThrusterAtSlowAndFastRates) {
       for (double& value : drive.y[row]) {
         value += 1e-3 * noise.normal();
       }
-      model.update(drive.x[row], drive.y[row], drive.t[row]);
+      const double pause_s = drive.t[row] > kPauseAfter ? kPause : 0.0;
+      model.update(drive.x[row], drive.y[row], drive.t[row] + pause_s);
     }
     const std::vector<Finding> findings = model.findings();
     ASSERT_EQ(findings.size(), 1U);
-    EXPECT_NEAR(findings[0].since_s, 900.0, 8.0);
+    EXPECT_NEAR(findings[0].since_s, 900.0 + kPause, 8.0);
     const std::string text = finding_text(findings[0], {drive.inputs, drive.targets});
     EXPECT_EQ(text.substr(0, 12), "n1 gives 50.") << text;
   }
