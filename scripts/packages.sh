@@ -38,11 +38,13 @@ wheel='export SOURCE_DATE_EPOCH=$(dpkg-parsechangelog -STimestamp) &&
     --no-index --no-deps --wheel-dir .. .'
 wanted=(lintian python3-pip patchelf)
 architectures=$here
+lint=(lintian --allow-root --fail-on 'error,warning')
 if [ "$architecture" != "$here" ]; then
   build=(dpkg-buildpackage --no-sign -B "-a$architecture" -Pcross,nocheck)
   wanted=(lintian "crossbuild-essential-$architecture")
   wheel=:
   architectures+=,$architecture
+  lint+=(--suppress-tags no-manual-page)  # help2man can't run the command
 fi
 dependencies=(apt-get build-dep --yes -qq --no-install-recommends)
 [ "$architecture" = "$here" ] || dependencies+=("-a$architecture" -Pcross,nocheck)
@@ -58,7 +60,7 @@ mmdebstrap --quiet --variant=buildd --format=null --dpkgopt=force-unsafe-io \
   --customize-hook="${KELPIE_RUN:-} chroot \"\$1\" sh -c 'cd $place/kelpie-$version &&
     ${build[*]} && $wheel'" \
   --customize-hook="chroot \"\$1\" sh -c 'cd $place &&
-    lintian --allow-root --fail-on error,warning *.changes *.dsc'" \
+    ${lint[*]} *.changes *.dsc'" \
   --customize-hook="rm -rf \"\$1$place/kelpie-$version\"" \
   --customize-hook="sync-out $place $out" \
   bookworm /dev/null >"build/packages-$architecture.log" 2>&1 || {
