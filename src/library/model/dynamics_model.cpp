@@ -26,7 +26,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "22";  // of the archive of all classes together
+constexpr const char* kStateVersion = "23";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -310,7 +310,7 @@ std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
                                  return GuardedAxis::bytes(
-                                     inputs.size(),
+                                     inputs.size(), terms.size(),
                                      Committee::bytes(inputs.size(), terms.size(), axis, plan) +
                                          2 * sizeof(ConformalInterval) + sizeof(Disturbance));
                                });

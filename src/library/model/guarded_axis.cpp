@@ -90,6 +90,7 @@ GuardedAxis::GuardedAxis(std::size_t inputs, const SharedSettings& shared,
                          std::optional<AxisScaling> scaling)
     : arguments_{inputs, shared, settings, terms, std::move(scaling)},
       axes_{arguments_.make(), arguments_.make()},
+      expected_target_(terms),
       guarded_(shared.track > 0.0),
       first_(inputs),
       young_until_(arguments_.scaling ? -kNever : kNever),
@@ -125,6 +126,9 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
     return trusted().update(x, y, t);
   }
   const bool refused = doubtful(x, y, t);
+  if (trusted().scaling() != nullptr && !trusted().far(x)) {
+    expected_target_.learn(x, y, refused);
+  }
   count_time(refused, t);
   const bool another_serves = refused != candidate_serves_;  // than the axis that learns
   const Prediction said = refused || another_serves ? assess(x) : Prediction{};
@@ -143,9 +147,15 @@ bool GuardedAxis::plausible(std::span<const double> x, double y, double t) const
   return trusted().plausible(x, y) && (t >= held_from_ || !trusted().far(x));
 }
 
+// Among implausible samples nothing is expected.
+bool GuardedAxis::expected(std::span<const double> x, double y) const {
+  return recent_ <= kGuard.company && !trusted().far(x) &&
+         expected_target_.expects(x, y, trusted().scaling()->target.mean);
+}
+
 // An implausible sample, or one among implausible samples.
 bool GuardedAxis::doubtful(std::span<const double> x, double y, double t) {
-  const bool implausible = trusted().scaling() != nullptr && !plausible(x, y, t);
+  const bool implausible = trusted().scaling() != nullptr && !plausible(x, y, t) && !expected(x, y);
   if (implausible && recent_ <= kGuard.company) {
     evidence_ = {};  // of one stretch: a sensor that is stuck explains its next stretch
   }
@@ -290,6 +300,7 @@ void GuardedAxis::trust_candidate(double t) {
 void GuardedAxis::begin_anew(double t) {
   drop_candidate();
   begin_probation(t);
+  expected_target_.clear();
   trusted_ = 1 - trusted_;
   trusted() = arguments_.make();
   trusted().set_past_models(given_);
@@ -435,6 +446,7 @@ void GuardedAxis::visit(Archive& archive) {
   }
   archive.flag(candidate_serves_);
   archive.require(probation_ || !candidate_serves_, "serves without a candidate");
+  archive.part("expected target", expected_target_);
   archive.flag(guarded_);
   archive.part("first", first_);
   archive.any_number(young_until_);

@@ -11,14 +11,16 @@
 
 #include "kelpie/model/stored_past_model.hpp"
 #include "model/dynamics_axis.hpp"
+#include "model/expected_target.hpp"
 #include "model/thinned_rows.hpp"
 
 namespace kelpie {
 
 /// An axis guarded against garbage: a scale is trusted after probation only.
 ///
-/// A sample more than 10 standard deviations away is implausible for an axis, with an exception for
-/// inputs that were held, after the first half minute (ScaleTracker). The trusted axis never
+/// A sample more than 10 standard deviations away is implausible for an axis, with two exceptions:
+/// inputs that were held, after the first half minute (ScaleTracker), and a target that follows
+/// from physics (ExpectedTarget), with inputs within the scale. The trusted axis never
 /// learns implausible samples, or samples among these. When implausible samples have come for half
 /// a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of the
 /// candidate follows. The candidate is in service after inputs more than 10 standard deviations
@@ -94,9 +96,11 @@ class GuardedAxis final : public OnlineRegressor {
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
-  /// Memory in bytes, for an axis of `axis` bytes: two axes and the doubtful samples.
-  static std::size_t bytes(std::size_t inputs, std::size_t axis) {
-    return 2 * axis + 4 * ThinnedRows::kMost * (inputs + 2) * sizeof(double);
+  /// Memory in bytes, for an axis of `axis` bytes: two axes, the doubtful samples, and what physics
+  /// leads to expect.
+  static std::size_t bytes(std::size_t inputs, std::size_t terms, std::size_t axis) {
+    return 2 * axis + 4 * ThinnedRows::kMost * (inputs + 2) * sizeof(double) +
+           ExpectedTarget::bytes(terms);
   }
 
  private:
@@ -129,6 +133,7 @@ class GuardedAxis final : public OnlineRegressor {
   Decision learn_doubted(std::span<const double> x, double y, double t, const Prediction& said);
   Decision learn_in_candidate(std::span<const double> x, double y, double t);
   bool plausible(std::span<const double> x, double y, double t) const;
+  bool expected(std::span<const double> x, double y) const;
   bool doubtful(std::span<const double> x, double y, double t);
   void count_time(bool refused, double t);
   void doubt(double t);
@@ -151,6 +156,7 @@ class GuardedAxis final : public OnlineRegressor {
   bool former_kept_ = false;            ///< the other axis was trusted until a candidate took over
   bool probation_ = false;              ///< the other axis is a candidate
   bool candidate_serves_ = false;       ///< the inputs of the last sample were far away
+  ExpectedTarget expected_target_;      ///< whatever axis is trusted
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small
   bool trusted_last_ = true;
 

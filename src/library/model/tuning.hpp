@@ -104,6 +104,16 @@ inline constexpr struct ModelTuning {
     std::size_t per_update = 3;   ///< samples that a new axis learns per update
   } guard;
 
+  /// The second opinion on implausible targets (model/expected_target.hpp).
+  struct Expected {
+    double prior = 0.1;               ///< samples per coefficient; by hand
+    double huber = 3.0;               ///< usual errors of full weight; by hand
+    std::size_t least_errors = 30;    ///< errors before the usual error is known; by hand
+    std::size_t error_every = 16;     ///< errors between two medians; by hand
+    std::int64_t rows_per_term = 10;  ///< before a target is expected; by hand
+    double unexpected = 0.5;          ///< of the distance from the mean, of an expected target
+  } expected;
+
   /// The equations of motion of a vehicle (model/steady_part.hpp).
   struct Steady {
     double prior = 0.1;          ///< samples per coefficient; by hand

@@ -172,6 +172,42 @@ TEST(GuardedAxis, CommandsHeldForMinutesAreNoGarbage) {
   EXPECT_GT(worst_r2(model, drive, 5000, 9000), 0.95);
 }
 
+// A controller holds the vehicle near rest, and follows a new reference within a second: of a
+// hundred samples two or three have targets beyond ten deviations of the others.
+TEST(GuardedAxis, RareManoeuvresOfACalmVehicleAreLearned) {
+  RandomStream random(8, "references");
+  Drive drive;
+  drive.inputs = {"u", "v", "n1", "n2"};
+  drive.targets = {"udot", "vdot"};
+  std::array<double, 2> velocity{};
+  std::array<double, 2> reference{};
+  for (std::size_t i = 0; i < 6000; ++i) {
+    if (i > 300 && i % 50 == 0) {
+      reference = {random.uniform(-1.0, 1.0), random.uniform(-0.6, 0.6)};
+    }
+    std::vector<double> x;
+    std::vector<double> y;
+    std::vector<double> commands;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double speed = velocity[axis];
+      const double drag = 0.3 * speed + 0.4 * speed * std::abs(speed);
+      const double command = std::clamp(drag + 4.0 * (reference[axis] - speed), -2.0, 2.0);
+      const double acceleration = command - drag;
+      x.push_back(speed + 1e-3 * random.normal());
+      y.push_back(acceleration + 0.01 * random.normal());
+      commands.push_back(command);
+      velocity[axis] += kStepS * acceleration;
+    }
+    x.insert(x.end(), commands.begin(), commands.end());
+    drive.x.push_back(std::move(x));
+    drive.y.push_back(std::move(y));
+  }
+  DynamicsModel model = model_of(drive);
+  learn(model, drive, 0, 4000);
+  EXPECT_GT(worst_r2(model, drive, 4000, 6000), 0.9);
+  EXPECT_EQ(model.axis(0).status().tally.changes, 0);
+}
+
 TEST(GuardedAxis, AStateOnProbationIsSavedWhole) {
   Drive drive = testing::drive(3, 1200);
   put_garbage(drive, 600, 100, 1e4, Where::both);
