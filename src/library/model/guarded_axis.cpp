@@ -147,20 +147,18 @@ bool GuardedAxis::plausible(std::span<const double> x, double y, double t) const
   return trusted().plausible(x, y) && (t >= held_from_ || !trusted().far(x));
 }
 
-// Among implausible samples nothing is expected.
 bool GuardedAxis::expected(std::span<const double> x, double y) const {
-  return recent_ <= kGuard.company && !trusted().far(x) &&
-         expected_target_.expects(x, y, trusted().scaling()->target.mean);
+  return !trusted().far(x) && expected_target_.expects(x, y, trusted().scaling()->target.mean);
 }
 
 // An implausible sample, or one among implausible samples.
 bool GuardedAxis::doubtful(std::span<const double> x, double y, double t) {
-  const bool implausible = trusted().scaling() != nullptr && !plausible(x, y, t) && !expected(x, y);
+  const bool implausible = trusted().scaling() != nullptr && !plausible(x, y, t);
   if (implausible && recent_ <= kGuard.company) {
     evidence_ = {};  // of one stretch: a sensor that is stuck explains its next stretch
   }
   recent_ += kGuard.recent * ((implausible ? 1.0 : 0.0) - recent_);
-  return implausible || recent_ > kGuard.company;
+  return implausible ? !expected(x, y) : recent_ > kGuard.company;
 }
 
 void GuardedAxis::count_time(bool refused, double t) {
