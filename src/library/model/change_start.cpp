@@ -31,8 +31,8 @@ double log_density(double error, double variance) {
 }  // namespace
 
 double robust_weight(double error, double variance) {
-  const double most = kHuber * std::sqrt(variance);
-  return std::abs(error) > most ? most / std::abs(error) : 1.0;
+  const double far = kHuber * kHuber * variance;
+  return error * error > far ? far / (error * error) : 1.0;
 }
 
 void CommandEffect::add(const CauseEffects& effects, std::size_t command, double weight) {

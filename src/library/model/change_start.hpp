@@ -88,7 +88,7 @@ struct ChangeStart {
   std::vector<double> gain_;  ///< scratch
 };
 
-/// Weight of an error (Huber): errors beyond 2.5 of their standard deviations count as if at 2.5.
+/// Weight of an error: errors beyond 2.5 of their standard deviations count less.
 double robust_weight(double error, double variance);
 
 }  // namespace kelpie

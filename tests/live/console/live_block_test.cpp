@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <regex>
@@ -50,7 +51,10 @@ class LiveBlock : public LiveCommand {
 // What the library says at the row of a log, of one target.
 double said_by(const std::string& library, const std::vector<double>& x) {
   const std::unique_ptr<void, int (*)(void*)> loaded(dlopen(library.c_str(), RTLD_NOW), &dlclose);
-  EXPECT_TRUE(loaded) << dlerror();  // NOLINT(concurrency-mt-unsafe): one thread
+  if (!loaded) {
+    ADD_FAILURE() << dlerror();  // NOLINT(concurrency-mt-unsafe): one thread
+    return std::nan("");
+  }
   double y = 0.0;
   using Predict = void (*)(const double*, double*);
   reinterpret_cast<Predict>(  // NOLINT: how dlsym is used
@@ -64,6 +68,9 @@ TEST_F(LiveBlock, HostsInCAndPythonFollowTheLearnerToItsLastModel) {
   ASSERT_EQ(shell(KELPIE_C_COMPILER " -std=c99 -Wall -Wextra -Werror -O1 " + examples +
                   ".c -o host -ldl"),
             0);
+  if (shell("./host >host.out 2>&1; [ $? -ne 126 ]") != 0) {
+    GTEST_SKIP() << "this machine runs programs of the build in an emulator alone";
+  }
   write("x.toml", "[live]\nalign = \"none\"\nblock = \"vehicle.block\"\n");
   Running live(folder_.path(), {"live", "--replay", "dive.csv", "--speed", "40", "--config",
                                 "x.toml", "--out", "out"});
