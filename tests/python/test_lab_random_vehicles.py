@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """lab/random_vehicles.py: vehicles drawn at random are the same again, and change when asked to."""
 import importlib.util
+import json
 from pathlib import Path
 
 import numpy as np
@@ -31,3 +32,15 @@ def test_a_vehicle_changes_after_three_fifths_of_the_drive():
         after, _, _ = short_vehicle(seed).simulate(changes=True)
         assert np.array_equal(before[:121], after[:121])
         assert not np.array_equal(before[121:], after[121:])
+
+
+def test_one_of_two_thrusters_without_thrust_is_no_load(build_dir, tmp_path):
+    """Both leave accelerations along one direction, a load of many times the inertia alone."""
+    vehicle = random_vehicles.Vehicle(77020)
+    rows = vehicle.log(changes=True)
+    held = (np.arange(len(rows)) >= vehicle.first_changed) & (np.arange(len(rows)) % 500 > 450)
+    random_vehicles.learn(build_dir / "kelpie", tmp_path, rows, held, vehicle)
+    result = json.loads((tmp_path / "learned" / "result.json").read_text())
+    named = [cause for finding in result["diagnosis"]["findings"] for cause in finding["causes"]]
+    assert [(cause["kind"], cause["column"]) for cause in named] == [("thruster", "c1")], named
+    assert named[0]["size"] < 0.6

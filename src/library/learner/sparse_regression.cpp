@@ -220,8 +220,8 @@ void SparseRegression::add_centre(std::span<const double> z, double left) {
 }
 
 double SparseRegression::weight_of(double error) const {
-  const double share = kOnline.members.huber * usual_error_.value() / std::abs(error);
-  return share < 1.0 ? share * share : 1.0;
+  const double share = usual_error_.huber_weight(error, kOnline.members.huber);
+  return share * share;
 }
 
 // The function of θ in its usual basis: β = L⁻ᵀ θ_v.

@@ -69,8 +69,15 @@ AlignmentSearch::AlignmentSearch(AlignmentFit& fit, double rate_hz, const Alignm
 }
 
 void AlignmentSearch::improve(AlignmentResult& found) {
-  const Scored present = scored(guess_of(found.alignment, fit_.commands().size()));
-  const Scored resting = neutral(scored(known_));
+  const Scored rest = pulses_at_rest(scored(known_));
+  AlignmentGuess before = guess_of(found.alignment, fit_.commands().size());
+  if (before == known_ && rest.guess != known_) {
+    found.alignment.actuators = rest.guess.actuators;
+    before = rest.guess;
+  }
+  known_ = rest.guess;
+  const Scored present = scored(std::move(before));
+  const Scored resting = neutral(rest);
   std::vector<Scored> better{refined(each_command(lagged(resting)))};
   const Scored late = shifted(resting);
   if (late.guess != resting.guess) {
@@ -110,6 +117,23 @@ AlignmentSearch::Scored AlignmentSearch::descend(Scored from, const Guesses& gue
     }
   }
   return from;
+}
+
+// By convention, and unless the log clearly says otherwise: where thrust is linear in the pulse, a
+// constant force does as well, but is no thruster's.
+AlignmentSearch::Scored AlignmentSearch::pulses_at_rest(Scored from) {
+  AlignmentGuess usual = from.guess;
+  for (std::size_t k = 0; k < range_.size(); ++k) {
+    if (are_servo_pulses(lowest_[k], lowest_[k] + range_[k]) && lowest_[k] < kNeutralPulseUs &&
+        lowest_[k] + range_[k] > kNeutralPulseUs && usual.actuators[k].none()) {
+      usual.actuators[k].neutral = kNeutralPulseUs;
+    }
+  }
+  if (usual == from.guess) {
+    return from;
+  }
+  Scored at_rest = scored(std::move(usual));
+  return FoldEvidence(at_rest.errors - from.errors).is_clear() ? from : at_rest;
 }
 
 AlignmentSearch::Scored AlignmentSearch::neutral(Scored from) {

@@ -28,6 +28,7 @@ class AlignmentSearch {
   Scored scored(AlignmentGuess guess);
   Scored step(const Scored& from, const Guesses& guesses);
   Scored descend(Scored from, const Guesses& guesses);
+  Scored pulses_at_rest(Scored from);
   Scored neutral(Scored from);
   Scored shifted(const Scored& from);
   Scored lagged(const Scored& from);

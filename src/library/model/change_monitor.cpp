@@ -97,7 +97,8 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
   const ChangeStart* const likely = most_evident();
   if (likely != nullptr && likely->evidence > threshold()) {
     ChangeStart& start = youngest_with(kChange.alike * likely->evidence);
-    if (start.evidence > kChange.clear * start.samples) {
+    if (start.evidence > kChange.clear * start.samples &&
+        start.over_constant > kChange.over_constant) {
       return believe(start, t);
     }
   }
@@ -181,10 +182,10 @@ void ChangeMonitor::begin_start(double t) {
   begun_s_ = t;
   ++begun_;
   const int doublings = std::min(std::countr_zero(begun_), kChange.doublings);
+  expect_usual_errors(*free);
   free->begin(t, kChange.life_s * static_cast<double>(1 << doublings));
   std::ranges::copy(fit_.theta(), free->theta.begin());
   free->expect_all_causes();
-  expect_usual_errors(*free);
 }
 
 void ChangeMonitor::expect_usual_errors(ChangeStart& start) const {
@@ -309,8 +310,8 @@ ChangeMonitor::Event ChangeMonitor::believe_cause(const Cause& cause, double sin
     return Event::none;
   }
   ChangeStart& start = start_before(since_s);
-  start.begin(since_s, kChange.life_s);
   expect_usual_errors(start);
+  start.begin(since_s, kChange.life_s);
   start.expect_cause(*command, cause.size - 1.0, kChange.named_deviation * kChange.named_deviation);
   start.effect = usual_effect_;
   return believe(start, row_s_);

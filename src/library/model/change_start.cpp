@@ -69,6 +69,7 @@ ChangeStart::ChangeStart(std::size_t commands, std::size_t axes, std::size_t coe
       size(commands + 2 * axes),
       covariance(size.size() * size.size()),
       lone(size.size() + 2),
+      constant(axes),
       scatter(axes),
       tau(axes),
       effect(commands),
@@ -79,6 +80,7 @@ void ChangeStart::begin(double t, double life) {
   begun_s = t;
   life_s = life;
   evidence = 0.0;
+  over_constant = 0.0;
   samples = 0.0;
   peak = 0.0;
   likelihood = 0.0;
@@ -86,6 +88,9 @@ void ChangeStart::begin(double t, double life) {
   std::ranges::fill(covariance, 0.0);
   std::ranges::fill(lone, kUnknown);
   std::ranges::fill(effect, CommandEffect{});
+  for (std::size_t a = 0; a < constant.size(); ++a) {
+    constant[a] = unknown_constant(a);
+  }
 }
 
 void ChangeStart::expect_all_causes() {
@@ -121,6 +126,31 @@ void ChangeStart::observe_lone(std::size_t axis, const CauseEffects& effects, do
   }
 }
 
+ConstantError ChangeStart::unknown_constant(std::size_t axis) const {
+  const double deviation = kStart.constant_errors * scatter[axis];
+  return {.variance = deviation * deviation};
+}
+
+// The log density of an error that is constant but for noise, or `unchanged`, of no error but
+// noise, where larger. A constant that explains less than no error begins anew, and so at a new
+// speed.
+double ChangeStart::constant_log_density(std::size_t axis, double error, double noise,
+                                         double unchanged) {
+  ConstantError& one = constant[axis];
+  const double left = error - one.value;
+  const double variance = noise + one.variance;
+  const double weight = robust_weight(left, variance) / tau[axis];
+  const double gain = one.variance / (noise / weight + one.variance);
+  one.value += gain * left;
+  one.variance *= 1.0 - gain;
+  const double density = log_density(left, variance);
+  one.likelihood += (density - unchanged) / tau[axis];
+  if (one.likelihood <= 0.0) {
+    one = unknown_constant(axis);
+  }
+  return std::max(density, unchanged);
+}
+
 void ChangeStart::observe(std::size_t axis, const CauseEffects& effects, double y, double without,
                           double spread) {
   auto sizes_covariance = columns_of(std::span<double>(covariance), size.size());
@@ -136,8 +166,14 @@ void ChangeStart::observe(std::size_t axis, const CauseEffects& effects, double 
     effect[c].add(effects, c, 1.0 / noise);
   }
   likelihood += (robust_log_density(error, noise + unknown) - unchanged) / tau[axis];
-  const double gained = log_density(error, noise + unknown) - log_density(without, noise);
-  evidence += std::clamp(gained, -kStart.clip_nats, kStart.clip_nats) / tau[axis];
+  const double changed = log_density(error, noise + unknown);
+  const auto gained_over = [&](double other) {
+    return std::clamp(changed - other, -kStart.clip_nats, kStart.clip_nats) / tau[axis];
+  };
+  const double without_change = log_density(without, noise);
+  evidence += gained_over(without_change);
+  over_constant = std::max(
+      0.0, over_constant + gained_over(constant_log_density(axis, without, noise, without_change)));
   samples += 1.0 / tau[axis];
   const double weight = robust_weight(error, noise + unknown) / tau[axis];
   const double scale = 1.0 / (noise / weight + unknown);
@@ -170,8 +206,14 @@ void ChangeStart::visit(Archive& archive) {
   if (!alive) {
     return;
   }
-  for (double* const number : {&begun_s, &life_s, &evidence, &samples, &peak, &likelihood}) {
+  for (double* const number :
+       {&begun_s, &life_s, &evidence, &over_constant, &samples, &peak, &likelihood}) {
     archive.number(*number);
+  }
+  for (ConstantError& one : constant) {
+    archive.number(one.value);
+    archive.number(one.variance);
+    archive.number(one.likelihood);
   }
   for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
     archive.numbers(*values);

@@ -16,6 +16,14 @@ struct LoneCause {
   double likelihood = 0.0;  ///< over no change [nats]
 };
 
+/// An error of one axis that has been constant for some time, and nothing else: a disturbance, or
+/// the model's own error where the vehicle holds its speed.
+struct ConstantError {
+  double value = 0.0;
+  double variance = 0.0;
+  double likelihood = 0.0;  ///< over no error [nats]
+};
+
 /// The value of one axis at one row, and the effect of every cause on this value.
 struct CauseEffects {
   double value = 0.0;            ///< Θ₀ᵀφ
@@ -46,7 +54,7 @@ struct ChangeStart {
   /// Requires 1 axis or more, and of coefficients some per axis.
   ChangeStart(std::size_t commands, std::size_t axes, std::size_t coefficients);
 
-  /// Begins at t [s], without knowledge of sizes; Θ₀, scatter and tau stay.
+  /// Begins at t [s], without knowledge of sizes; Θ₀, scatter and tau stay, and are to be known.
   void begin(double t, double life);
 
   /// Every cause may have a part in the change.
@@ -69,21 +77,25 @@ struct ChangeStart {
   bool alive = false;
   double begun_s = 0.0;
   double life_s = 0.0;
-  double evidence = 0.0;              ///< [nats]
-  double samples = 0.0;               ///< independent samples so far
-  double peak = 0.0;                  ///< largest evidence after a row [nats]
-  double likelihood = 0.0;            ///< of all sizes together, over no change [nats]
-  std::vector<double> theta;          ///< Θ₀, axis after axis
-  std::vector<double> size;           ///< mean of s
-  std::vector<double> covariance;     ///< of s
-  std::vector<LoneCause> lone;        ///< each cause, then drag of all axes, then inertia of all
-  std::vector<double> scatter;        ///< usual error of each axis
-  std::vector<double> tau;            ///< rows per independent sample of each axis
-  std::vector<CommandEffect> effect;  ///< of each command
+  double evidence = 0.0;                ///< over the vehicle without a change [nats]
+  double over_constant = 0.0;           ///< the same over constant errors alone, never below 0
+  double samples = 0.0;                 ///< independent samples so far
+  double peak = 0.0;                    ///< largest evidence after a row [nats]
+  double likelihood = 0.0;              ///< of all sizes together, over no change [nats]
+  std::vector<double> theta;            ///< Θ₀, axis after axis
+  std::vector<double> size;             ///< mean of s
+  std::vector<double> covariance;       ///< of s
+  std::vector<LoneCause> lone;          ///< each cause, then drag of all axes, then inertia of all
+  std::vector<ConstantError> constant;  ///< of each axis
+  std::vector<double> scatter;          ///< usual error of each axis
+  std::vector<double> tau;              ///< rows per independent sample of each axis
+  std::vector<CommandEffect> effect;    ///< of each command
 
  private:
   void observe_lone(std::size_t axis, const CauseEffects& effects, double error, double noise,
                     double unchanged);
+  ConstantError unknown_constant(std::size_t axis) const;
+  double constant_log_density(std::size_t axis, double error, double noise, double unchanged);
 
   std::vector<double> gain_;  ///< scratch
 };

@@ -28,8 +28,7 @@ std::size_t ExpectedTarget::bytes(std::size_t terms) {
 void ExpectedTarget::learn(std::span<const double> x, double y, bool doubtful) {
   compute_features(x);
   const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
-  const double most = kExpected.huber * usual_error_.value();
-  const double root = std::abs(error) > most ? std::sqrt(most / std::abs(error)) : 1.0;
+  const double root = std::sqrt(usual_error_.huber_weight(error, kExpected.huber));
   usual_error_.add(error);
   as_vector(features_) *= root;
   fit_.add(features_, root * y);

@@ -111,7 +111,8 @@ inline constexpr struct ModelTuning {
     std::size_t least_errors = 30;    ///< errors before the usual error is known; by hand
     std::size_t error_every = 16;     ///< errors between two medians; by hand
     std::int64_t rows_per_term = 10;  ///< before a target is expected; by hand
-    double unexpected = 0.5;          ///< of the distance from the mean, of an expected target
+    double unexpected = 0.5;          ///< of the distance from the mean, of an expected target: by
+                                      ///< hand, simulated plants hardly differ at 0.25
   } expected;
 
   /// The equations of motion of a vehicle (model/steady_part.hpp).
@@ -152,6 +153,8 @@ inline constexpr struct ModelTuning {
     double enough = 40.0;            ///< nats; without a change up to 39
     double over_usual = 2.0;         ///< times the largest evidence of former starts; from 1.5, 2
     double clear = 0.45;             ///< nats per sample: 40 % of the errors' variance is left
+    double constant_errors = 10.0;   ///< usual errors, deviation of a constant error; by hand
+    double over_constant = 5.0;      ///< nats over constant errors: very strong (Kass & Raftery)
     double usual_memory_s = 1800.0;  ///< s, of this evidence; by hand
     double samples_per_term = 5.0;   ///< independent samples of a vehicle that is known; by hand
     double alike = 0.8;              ///< share of the largest evidence that tells as much; by hand

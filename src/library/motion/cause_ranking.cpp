@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/cause_ranking.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,20 +22,32 @@ bool matters(const Explanation& explanation, double size) {
   return !is_share || std::abs(size) >= kDiagnosis.least_share;
 }
 
-// A load that would change the inertia beyond what vehicles carry: where nothing accelerates, an
-// infinite inertia explains every contradiction.
-bool is_plausible(const Explanation& explanation, double size) {
-  return explanation.kind != CauseKind::load ||
-         (size > 1.0 / kDiagnosis.most_inertia - 1.0 && size < kDiagnosis.most_inertia - 1.0);
+// Whether a load changes the inertia along every axis by no more than vehicles carry. Where nothing
+// accelerates, an infinite inertia explains every contradiction, and an acceleration along one
+// direction alone is a load as well as a thruster without thrust. With shares S of accelerations,
+// inertia is (1 + S)⁻¹ times what it was; shares within their errors count as 0.
+bool is_carried(std::span<const double> shares, std::span<const double> errors, double dispersion) {
+  Eigen::Matrix3d rest = Eigen::Matrix3d::Identity();
+  for (std::size_t c = 0; c < shares.size(); ++c) {
+    const auto [on, from] = kLoadColumns[c];
+    const double error = kDiagnosis.sure_errors * std::sqrt(dispersion) * errors[c];
+    if (from != LoadColumn::kTurning && std::abs(shares[c]) > error) {
+      rest(static_cast<Eigen::Index>(on), static_cast<Eigen::Index>(from)) += shares[c];
+    }
+  }
+  const Eigen::Array3d inertia = rest.inverse().diagonal();
+  return rest.determinant() > 0.0 && (inertia < kDiagnosis.most_inertia).all() &&
+         (inertia > 1.0 / kDiagnosis.most_inertia).all();
 }
 
 class Ranker {
  public:
   Ranker(const Comparison& comparison, std::span<const Explanation> list,
-         std::span<const Agreement> alone, double rows)
+         std::span<const Agreement> alone, double rows, double dispersion)
       : comparison_(comparison),
         list_(list),
         alone_(alone),
+        dispersion_(dispersion),
         penalty_(0.5 * std::log(std::max(rows, 2.0))) {}
 
   Choice single(std::size_t i) const { return {i, i, alone_[i], 0.0}; }
@@ -58,12 +71,18 @@ class Ranker {
     return has(a, b.one) && has(a, b.other) && has(b, a.one) && has(b, a.other);
   }
 
-  // Whether `test` holds of each cause of a choice and its size.
-  bool all_of(const Choice& choice, bool (*test)(const Explanation&, double)) const {
+  // Whether each cause of a choice has a size that matters.
+  bool matter(const Choice& choice) const {
     const Explanation& one = list_[choice.one];
-    return test(one, choice.agreement.size[0]) &&
+    return matters(one, choice.agreement.size[0]) &&
            (choice.one == choice.other ||
-            test(list_[choice.other], choice.agreement.size[one.columns.size()]));
+            matters(list_[choice.other], choice.agreement.size[one.columns.size()]));
+  }
+
+  bool are_plausible(const Choice& choice) const {
+    const std::size_t count = list_[choice.one].columns.size();
+    return is_plausible(choice.one, choice.agreement, 0) &&
+           (choice.one == choice.other || is_plausible(choice.other, choice.agreement, count));
   }
 
   bool overlap(std::size_t i, std::size_t j) const {
@@ -91,9 +110,17 @@ class Ranker {
   }
 
  private:
+  bool is_plausible(std::size_t cause, const Agreement& agreement, std::size_t first) const {
+    const std::size_t count = list_[cause].columns.size();
+    return list_[cause].kind != CauseKind::load ||
+           is_carried(std::span(agreement.size).subspan(first, count),
+                      std::span(agreement.error).subspan(first, count), dispersion_);
+  }
+
   const Comparison& comparison_;
   std::span<const Explanation> list_;
   std::span<const Agreement> alone_;
+  double dispersion_;
   double penalty_;
 };
 
@@ -113,10 +140,10 @@ FindingState state_of(const CauseRanking& ranking, bool matters) {
 CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanation> explanations,
                          std::span<const Agreement> alone, double rows, double least_dispersion,
                          std::size_t unknowns) {
-  const Ranker ranker(comparison, explanations, alone, rows);
+  const Ranker ranker(comparison, explanations, alone, rows, least_dispersion);
   const auto singles = [&](auto visit) {
     for (std::size_t i = 0; i < explanations.size(); ++i) {
-      if (const Choice single = ranker.single(i); ranker.all_of(single, is_plausible)) {
+      if (const Choice single = ranker.single(i); ranker.are_plausible(single)) {
         visit(single);
       }
     }
@@ -128,7 +155,7 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
           continue;
         }
         if (const Choice pair = ranker.pair(i, j);
-            ranker.all_of(pair, matters) && ranker.all_of(pair, is_plausible)) {
+            ranker.matter(pair) && ranker.are_plausible(pair)) {
           visit(pair);
         }
       }
@@ -146,7 +173,8 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   ranker.best_two(singles, least_dispersion, ranking.best, ranking.rival);
   ranking.dispersion = dispersion_of(ranking.best);
   ranking.explained = std::min(ranking.best.agreement.evidence / whole, 1.0);
-  if (ranking.dispersion > kDiagnosis.pair_dispersion * least_dispersion) {
+  if (ranking.dispersion > kDiagnosis.pair_dispersion * least_dispersion &&
+      ranking.explained < kDiagnosis.alone_explained) {
     Choice best;
     Choice rival;
     ranker.best_two(pairs, least_dispersion, best, rival);
@@ -165,7 +193,7 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   ranking.best.worth = ranker.worth(ranking.best, ranking.dispersion);
   ranking.rival.worth = ranker.worth(ranking.rival, ranking.dispersion);
   ranking.margin = ranking.best.worth - ranking.rival.worth;
-  ranking.state = state_of(ranking, ranker.all_of(ranking.best, matters));
+  ranking.state = state_of(ranking, ranker.matter(ranking.best));
   return ranking;
 }
 

@@ -135,10 +135,8 @@ void Explanations::add_loads() {
   list_.push_back(load);
   if (body_axes_ == std::vector<std::size_t>{0, 1, 5}) {
     // Off the centre it adds to yaw as well, and couples yaw to both others.
-    for (const auto& [on, from] :
-         {std::pair{2, 2}, {1, 2}, {2, 1}, {0, 2}, {2, 0}, {0, 6}, {1, 6}}) {
-      load.columns.push_back(
-          column(CauseKind::load, static_cast<std::size_t>(on), static_cast<std::size_t>(from)));
+    for (const auto& [on, from] : std::span(kLoadColumns).subspan(load.columns.size())) {
+      load.columns.push_back(column(CauseKind::load, on, from));
     }
     list_.push_back(std::move(load));
   }
@@ -174,7 +172,7 @@ void Explanations::inertial(const MotionTerms& terms, std::size_t axis,
 void Explanations::load_direction(const MotionTerms& terms, std::span<const double> theta,
                                   const Column& column, std::span<double> out) const {
   const std::span<double> on = out.subspan(column.place * terms.size(), terms.size());
-  if (column.from == kTurning) {
+  if (column.from == LoadColumn::kTurning) {
     on[terms.find({Form::square, terms.velocities()[2]})] = 1.0;
     return;
   }

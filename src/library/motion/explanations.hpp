@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -13,6 +14,23 @@
 namespace kelpie {
 
 inline constexpr std::size_t kMostColumns = 24;  ///< of one Agreement
+
+/// The columns of a load, in their order: the first axis takes a share of the acceleration of the
+/// second axis, kTurning: of r². The last six are of a load off the centre of surge, sway and yaw.
+struct LoadColumn {
+  static constexpr std::size_t kTurning = 6;
+  std::size_t on;
+  std::size_t from;
+};
+inline constexpr std::array<LoadColumn, 9> kLoadColumns{{{0, 0},
+                                                         {1, 1},
+                                                         {2, 2},
+                                                         {1, 2},
+                                                         {2, 1},
+                                                         {0, 2},
+                                                         {2, 0},
+                                                         {0, LoadColumn::kTurning},
+                                                         {1, LoadColumn::kTurning}}};
 
 /// The effect of a cause on the coefficients Θ (terms × axes) of the equations of motion: one
 /// direction per column, ΔΘ = Σ s_c D_c(Θ).
@@ -54,9 +72,8 @@ class Explanations {
   struct Column {
     CauseKind kind;
     std::size_t place;     // as Cause::place; for a load: the axis that is accelerated
-    std::size_t from = 0;  // for a load: the accelerating axis, or kTurning
+    std::size_t from = 0;  // for a load: as LoadColumn::from
   };
-  static constexpr std::size_t kTurning = 6;
   std::size_t column(CauseKind kind, std::size_t place, std::size_t from = 0);
   void add_loads();
   void inertial(const MotionTerms& terms, std::size_t axis, std::span<double> direction) const;

@@ -39,14 +39,18 @@ inline constexpr struct DiagnosisTuning {
   double least_share = 0.03;        ///< of thrust, drag, inertia, scale: smaller changes are silent
   double least_explained = 0.6;     ///< share of the unrestricted refit; below: no known cause
   double pair_dispersion = 2.0;     ///< [times the usual scatter] above, pairs are tested
-  double pair_share = 0.75;         ///< of the unexplained rest that the second cause explains
-  double pair_nats = 12.0;          ///< least gain of a pair over a single cause
+  /// Share of the unrestricted refit; above, no pair is tested: by hand, since two causes explain
+  /// the model error of one cause.
+  double alone_explained = 0.95;
+  double pair_share = 0.75;  ///< of the unexplained rest that the second cause explains
+  double pair_nats = 12.0;   ///< least gain of a pair over a single cause
   /// Model error as a share of the change, for factors; and for added accelerations and
   /// velocities. Filters on the accelerations weaken the equations as a whole, visible in the
   /// latter only.
   double discrepancy = 0.004;
   double added_discrepancy = 0.0125;
   double most_inertia = 3.0;   ///< [ratio] of a load that comes, its inverse of a load that goes
+  double sure_errors = 2.0;    ///< [standard errors] of a share of a load that counts: by hand
   double dead_share = 0.2;     ///< of thrust; below, the next change is no factor: by hand
   double kept_named = 0.5;     ///< weight of the reference after a named change
   double kept_unnamed = 0.02;  ///< weight after another change

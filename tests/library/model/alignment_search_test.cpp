@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -137,6 +138,31 @@ TEST(AlignmentSearch, WhatIsKnownOfActuatorsStandsWhateverIsFound) {
   AlignmentProblem problem = log.problem();
   problem.known = {{"u", pulses}};
   EXPECT_EQ(testing::message_of<InputError>([&] { find_alignment(problem); }).substr(0, 3), "u: ");
+}
+
+// A constant force explains as much as a neutral point where thrust is linear in the pulse.
+TEST(AlignmentSearch, PulsesRestAt1500WhereTheLogDoesNotTell) {
+  RandomStream random(3, "pulses");
+  testing::TwoAxisLog log;
+  std::array<double, 2> v{};
+  std::array<double, 2> pulse{1500.0, 1500.0};
+  for (std::size_t i = 0; i < 2000; ++i) {
+    for (double& p : pulse) {
+      p = i % 20 == 0 ? random.uniform(1100.0, 1900.0) : p;
+    }
+    const std::array<double, 2> y{2e-3 * (pulse[0] - 1500.0) - 0.8 * v[0],
+                                  1e-3 * (pulse[1] - 1500.0) - 0.5 * v[1]};
+    log.add({v[0], v[1], pulse[0], pulse[1]},
+            {y[0] + 0.05 * random.normal(), y[1] + 0.05 * random.normal()});
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      v[axis] += 0.1 * y[axis];
+    }
+  }
+  const AlignmentResult found = find_alignment(log.problem());
+  ASSERT_EQ(found.alignment.actuators.size(), 2U) << found.why;
+  for (const Actuator& actuator : found.alignment.actuators) {
+    EXPECT_EQ(actuator, Actuator{.neutral = 1500.0});
+  }
 }
 
 TEST(AlignmentSearch, SaysWhyThereIsNone) {

@@ -142,6 +142,23 @@ TEST(ChangeMonitor, RaisesNoAlarmInHoursOfColouredNoiseWithOutliers) {
   EXPECT_TRUE(watch(monitor, drive).changed.empty());
 }
 
+// The vehicle holds its speed where the model is a little wrong: a disturbance would do the same.
+TEST(ChangeMonitor, AConstantErrorAtOneSpeedIsNoChange) {
+  PlanarDrive drive;
+  drive.drive(1, 6000, 0.2);
+  add_noise(drive, 0.2, 3);
+  RandomStream random(5, "held");
+  const std::array<double, 4> held = drive.x.back();
+  const std::array<double, 2> y = PlanarDrive::accelerations(held);
+  for (int i = 0; i < 500; ++i) {
+    drive.x.push_back(held);
+    drive.y.push_back({y[0] + 0.1 + 0.03 * random.normal(), y[1] - 0.1 + 0.03 * random.normal()});
+    drive.t.push_back(drive.t.back() + 0.2);
+  }
+  ChangeMonitor monitor = make_monitor();
+  EXPECT_TRUE(watch(monitor, drive).changed.empty());
+}
+
 // Six minutes are too short for the monitor to know the vehicle; a diagnosis names the cause ten
 // seconds after the change.
 class NamedCause : public ::testing::Test {

@@ -10,7 +10,6 @@
 namespace kelpie::rollout_test {
 namespace {
 
-using testing::kelpie;
 using testing::little_log;
 using testing::Outcome;
 
