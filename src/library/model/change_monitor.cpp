@@ -375,7 +375,7 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
   if (std::isfinite(leverage_)) {
     observe(start, y, false);
   }
-  if (start.evidence < start.peak - kChange.enough) {
+  if (start.evidence < start.peak - std::max(kChange.enough, kChange.lost_share * start.peak)) {
     move_to(nullptr);
     usual_ = std::max(usual_, start.peak);
     end_all_starts();
