@@ -124,8 +124,10 @@ AlignmentSearch::Scored AlignmentSearch::descend(Scored from, const Guesses& gue
 AlignmentSearch::Scored AlignmentSearch::pulses_at_rest(Scored from) {
   AlignmentGuess usual = from.guess;
   for (std::size_t k = 0; k < range_.size(); ++k) {
-    if (are_servo_pulses(lowest_[k], lowest_[k] + range_[k]) && lowest_[k] < kNeutralPulseUs &&
-        lowest_[k] + range_[k] > kNeutralPulseUs && usual.actuators[k].none()) {
+    const double highest = lowest_[k] + range_[k];
+    const double side = std::min(kNeutralPulseUs - lowest_[k], highest - kNeutralPulseUs);
+    if (range_[k] > 0.0 && are_servo_pulses(lowest_[k], highest) &&
+        side >= kSearch.pulse_side * range_[k] && usual.actuators[k].none()) {
       usual.actuators[k].neutral = kNeutralPulseUs;
     }
   }

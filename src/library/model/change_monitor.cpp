@@ -99,6 +99,7 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
     ChangeStart& start = youngest_with(kChange.alike * likely->evidence);
     if (start.evidence > kChange.clear * start.samples &&
         start.over_constant > kChange.over_constant) {
+      named_ = false;
       return believe(start, t);
     }
   }
@@ -314,7 +315,12 @@ ChangeMonitor::Event ChangeMonitor::believe_cause(const Cause& cause, double sin
   start.begin(since_s, kChange.life_s);
   start.expect_cause(*command, cause.size - 1.0, kChange.named_deviation * kChange.named_deviation);
   start.effect = usual_effect_;
+  named_ = true;
   return believe(start, row_s_);
+}
+
+ChangeMonitor::Event ChangeMonitor::disbelieve_cause() {
+  return named_command() ? withdraw() : Event::none;
 }
 
 // One cause that explains nearly all that all causes together explain: errors of the equation of
@@ -376,10 +382,8 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
     observe(start, y, false);
   }
   if (start.evidence < start.peak - std::max(kChange.enough, kChange.lost_share * start.peak)) {
-    move_to(nullptr);
     usual_ = std::max(usual_, start.peak);
-    end_all_starts();
-    return Event::withdrawn;
+    return withdraw();
   }
   if (t - believed_s_ > kChange.probation_s) {
     return settle();
@@ -390,6 +394,12 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
     return Event::refined;
   }
   return Event::none;
+}
+
+ChangeMonitor::Event ChangeMonitor::withdraw() {
+  move_to(nullptr);
+  end_all_starts();
+  return Event::withdrawn;
 }
 
 // The changed vehicle becomes the vehicle without a change.
@@ -449,6 +459,7 @@ void ChangeMonitor::visit(Archive& archive) {
   std::ranges::for_each(told_gains_, [&](CommandGain& told) { archive.number(told.factor); });
   std::ranges::for_each(usual_effect_, [&](CommandEffect& one) { one.visit(archive); });
   archive.whole(gained_, 0, commands_);
+  archive.flag(named_);
 }
 
 }  // namespace kelpie

@@ -71,6 +71,16 @@ class ChangeMonitor {
   /// errors are not known.
   Event believe_cause(const Cause& cause, double since_s);
 
+  /// The input of a command whose change was named by a diagnosis and is on probation; else none.
+  std::optional<std::size_t> named_command() const {
+    return named_ && by_gain() && changed_start_ < kMostStarts
+               ? std::optional(gains_[gained_].input)
+               : std::nullopt;
+  }
+
+  /// The diagnosis has taken named_command() back. Ensures: `none` and nothing done without one.
+  Event disbelieve_cause();
+
   double since() const { return since_s_; }  ///< Start of the last change [s].
 
   /// Change of an axis' coefficients by the last event, [target unit per unit of the term]; the
@@ -118,6 +128,7 @@ class ChangeMonitor {
   ChangeStart& youngest_with(double evidence);
   Event believe(ChangeStart& start, double t);
   Event follow(std::span<const double> y, double t);
+  Event withdraw();
   Event settle();
   void move_to(const ChangeStart* start);
 
@@ -136,6 +147,7 @@ class ChangeMonitor {
   std::vector<ChangeStart> starts_;
   std::size_t changed_start_;  ///< number of the start believed; kMostStarts: none
   std::size_t gained_;         ///< command of which the effect has changed; commands_: not so
+  bool named_ = false;         ///< the last change, by a diagnosis
   double believed_s_;          ///< the last change, by whichever mechanism [s]
   double moved_s_ = 0.0;       ///< last step [s]
   double since_s_ = 0.0;       ///< [s]

@@ -51,6 +51,21 @@ std::vector<std::size_t> commands_among(std::span<const std::string> inputs,
   return commands;
 }
 
+// Whether the diagnosis stands by the thrust of a command as a cause of the change since `since_s`:
+// until the finding is taken back, or tells of other causes.
+bool still_named(std::span<const Finding> findings, std::size_t command, double since_s) {
+  if (findings.empty() || findings.back().since_s < since_s) {
+    return false;
+  }
+  const Finding& last = findings.back();
+  const auto is_thrust = [&](const Cause& cause) {
+    return cause.kind == CauseKind::thruster && cause.place == command;
+  };
+  return last.since_s > since_s || last.state == FindingState::looking ||
+         std::ranges::any_of(std::span(last.causes).first(last.count), is_thrust) ||
+         (last.state == FindingState::ambiguous && is_thrust(last.rival));
+}
+
 // Whether a committee reacts to changes on every axis.
 bool adapts(const ModelSettings& settings) {
   return settings.shared.learner != LearnerKind::svr &&
@@ -203,12 +218,18 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
 }
 
 // The diagnosis names a thruster by its own equations of motion and on a window of its own, often
-// before the monitor knows the vehicle well enough to compare.
+// before the monitor knows the vehicle well enough to compare. On more rows the diagnosis may name
+// another cause, or take the finding back.
 void DynamicsModel::Parts::believe_diagnosis() {
-  if (diagnosis->findings().empty()) {
+  const std::span<const Finding> findings = diagnosis->findings();
+  if (const std::optional<std::size_t> command = change->named_command();
+      command && !still_named(findings, *command, named_since_s)) {
+    apply_change(change->disbelieve_cause());
+  }
+  if (findings.empty()) {
     return;
   }
-  const Finding& last = diagnosis->findings().back();
+  const Finding& last = findings.back();
   if (last.state != FindingState::named || last.since_s <= named_since_s) {
     return;
   }

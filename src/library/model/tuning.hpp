@@ -15,6 +15,7 @@ inline constexpr struct ModelTuning {
     double farthest_s = 1.0;                ///< lags searched, ±; by hand
     double most_rows_away = 1e6;            ///< bound of a lag in rows; by hand
     int steps_per_side = 10;                ///< lags tried on either side of 0; by hand
+    double pulse_side = 0.25;               ///< of the range of pulses, on either side of rest
     double longest_lag = 0.02;              ///< of the duration of the rows: an actuator's lag
     double longest_lag_s = 120.0;           ///< s, of an actuator; by hand
     int rate_halvings = 8;                  ///< rates tried: the whole range in 1 s to 128 s

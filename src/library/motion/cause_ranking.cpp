@@ -148,10 +148,13 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
       }
     }
   };
+  CauseRanking ranking;
+  const auto is_load = [&](std::size_t i) { return explanations[i].kind == CauseKind::load; };
   const auto pairs = [&](auto visit) {
+    const bool nearly_all = ranking.explained > kDiagnosis.alone_explained;
     for (std::size_t i = 0; i < explanations.size(); ++i) {
       for (std::size_t j = i + 1; j < explanations.size(); ++j) {
-        if (ranker.overlap(i, j)) {
+        if (ranker.overlap(i, j) || (nearly_all && (is_load(i) || is_load(j)))) {
           continue;
         }
         if (const Choice pair = ranker.pair(i, j);
@@ -169,12 +172,10 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   };
   const double whole =
       std::max(comparison.whole() - 0.5 * least_dispersion * static_cast<double>(unknowns), 1e-9);
-  CauseRanking ranking;
   ranker.best_two(singles, least_dispersion, ranking.best, ranking.rival);
   ranking.dispersion = dispersion_of(ranking.best);
   ranking.explained = std::min(ranking.best.agreement.evidence / whole, 1.0);
-  if (ranking.dispersion > kDiagnosis.pair_dispersion * least_dispersion &&
-      ranking.explained < kDiagnosis.alone_explained) {
+  if (ranking.dispersion > kDiagnosis.pair_dispersion * least_dispersion) {
     Choice best;
     Choice rival;
     ranker.best_two(pairs, least_dispersion, best, rival);

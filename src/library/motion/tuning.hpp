@@ -39,8 +39,8 @@ inline constexpr struct DiagnosisTuning {
   double least_share = 0.03;        ///< of thrust, drag, inertia, scale: smaller changes are silent
   double least_explained = 0.6;     ///< share of the unrestricted refit; below: no known cause
   double pair_dispersion = 2.0;     ///< [times the usual scatter] above, pairs are tested
-  /// Share of the unrestricted refit; above, no pair is tested: by hand, since two causes explain
-  /// the model error of one cause.
+  /// Share of the unrestricted refit; above, no load is the second cause, since its many sizes
+  /// explain the model error of the first: by hand.
   double alone_explained = 0.95;
   double pair_share = 0.75;  ///< of the unexplained rest that the second cause explains
   double pair_nats = 12.0;   ///< least gain of a pair over a single cause

@@ -209,6 +209,19 @@ TEST_F(NamedCause, IsTakenBackWhereRowsContradict) {
   }
 }
 
+TEST_F(NamedCause, IsTakenBackWithTheFinding) {
+  const Cause half{CauseKind::thruster, kCommands[0], 0.5, 0.45, 0.55};
+  PlanarDrive drive = damaged(kStep, 360.0, 4.0, 0.5);
+  watch(monitor_, drive);
+  EXPECT_EQ(monitor_.disbelieve_cause(), Event::none);
+  ASSERT_EQ(monitor_.believe_cause(half, 360.0), Event::changed);
+  EXPECT_EQ(monitor_.named_command(), kCommands[0]);
+  const double factor = monitor_.gains()[0].factor;
+  EXPECT_EQ(monitor_.disbelieve_cause(), Event::withdrawn);
+  EXPECT_DOUBLE_EQ(monitor_.gains()[0].factor * factor, 1.0);
+  EXPECT_FALSE(monitor_.named_command());
+}
+
 TEST_F(NamedCause, OfAnotherKindChangesNothing) {
   for (const Cause& cause : {Cause{.kind = CauseKind::thruster, .place = 0, .size = 0.5},
                              Cause{.kind = CauseKind::drag, .place = 1, .size = 1.5},
