@@ -97,8 +97,7 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
   const ChangeStart* const likely = most_evident();
   if (likely != nullptr && likely->evidence > threshold()) {
     ChangeStart& start = youngest_with(kChange.alike * likely->evidence);
-    if (start.evidence > kChange.clear * start.samples &&
-        start.over_constant > kChange.over_constant) {
+    if (is_clear(start)) {
       named_ = false;
       return believe(start, t);
     }
@@ -240,6 +239,13 @@ void ChangeMonitor::observe(ChangeStart& start, std::span<const double> y, bool 
     start.observe(a, effects_, y[a], without, 1.0 + leverage_);
   }
   start.peak = std::max(start.peak, start.evidence);
+}
+
+// Slow drifts, which a model follows anyway, gain less of a sample; what constant errors do not
+// explain at all is no drift.
+bool ChangeMonitor::is_clear(const ChangeStart& start) {
+  return start.over_constant > kChange.enough || (start.over_constant > kChange.over_constant &&
+                                                  start.evidence > kChange.clear * start.samples);
 }
 
 const ChangeStart* ChangeMonitor::most_evident() const {

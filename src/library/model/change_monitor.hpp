@@ -124,6 +124,7 @@ class ChangeMonitor {
   void observe(ChangeStart& start, std::span<const double> y, bool against_fit);
   std::optional<std::size_t> clear_command(const ChangeStart& start) const;
   void move_gains(const ChangeStart* start);
+  static bool is_clear(const ChangeStart& start);
   const ChangeStart* most_evident() const;
   ChangeStart& youngest_with(double evidence);
   Event believe(ChangeStart& start, double t);
