@@ -387,7 +387,7 @@ ChangeMonitor::Event ChangeMonitor::follow(std::span<const double> y, double t) 
   if (std::isfinite(leverage_)) {
     observe(start, y, false);
   }
-  if (start.evidence < start.peak - std::max(kChange.enough, kChange.lost_share * start.peak)) {
+  if (start.evidence < start.peak - kChange.enough) {
     usual_ = std::max(usual_, start.peak);
     return withdraw();
   }

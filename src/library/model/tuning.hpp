@@ -163,7 +163,6 @@ inline constexpr struct ModelTuning {
     double least_gain = 0.05;        ///< of a command; 0 would leave no way back
     double most_gain = 3.0;          ///< of a command; by hand
     double gain_step = 0.01;         ///< between two gains tried; by hand
-    double lost_share = 0.125;       ///< of the largest evidence, whose loss withdraws; by hand
     double settle_s = 60.0;          ///< s in which coefficients follow a change; by hand
     double move_every_s = 1.0;       ///< s between two steps; by hand
     double probation_s = 120.0;      ///< s in which a change may be withdrawn; by hand
