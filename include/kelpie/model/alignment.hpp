@@ -258,13 +258,13 @@ std::vector<std::size_t> named_commands(std::span<const std::string> inputs, std
 /// the tenth. Servo pulses with a quarter of their range or more on either side of 1500 µs rest
 /// there unless the error is clearly larger. From there on the search adds one property at a time
 /// (neutral point, shift, lag, rate, delay), takes the simplest value within one standard error of
-/// the best (Breiman et al. 1984), and keeps the property on clear evidence only: a mean gain of 3 %
-/// or more (in logarithms) that is at least three standard errors and appears on 60 % of the folds.
-/// A kernel ridge regression on 300 rows of each fifth, for vehicles badly described by the terms,
-/// has to agree to 3 %. Otherwise the present alignment stays, with the reason. Outliers are clipped.
-/// Dead bands and gains astern are not searched: learners represent both. Lags of their own for
-/// each target explained hardly more on all vehicles at hand, and would split samples. Throws
-/// InputError on states without inputs. Cost: some 50 fits, and 50 more per command, to at
+/// the best (Breiman et al. 1984), and keeps the property on clear evidence only: a mean gain of 3
+/// % or more (in logarithms) that is at least three standard errors and appears on 60 % of the
+/// folds. A kernel ridge regression on 300 rows of each fifth, for vehicles badly described by the
+/// terms, has to agree to 3 %. Otherwise the present alignment stays, with the reason. Outliers are
+/// clipped. Dead bands and gains astern are not searched: learners represent both. Lags of their
+/// own for each target explained hardly more on all vehicles at hand, and would split samples.
+/// Throws InputError on states without inputs. Cost: some 50 fits, and 50 more per command, to at
 /// most 5,000 rows.
 AlignmentResult find_alignment(const AlignmentProblem& problem);
 
