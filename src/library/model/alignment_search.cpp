@@ -134,7 +134,7 @@ AlignmentSearch::Scored AlignmentSearch::pulses_at_rest(Scored from) {
   if (usual == from.guess) {
     return from;
   }
-  Scored at_rest = scored(std::move(usual));
+  const Scored at_rest = scored(std::move(usual));
   return FoldEvidence(at_rest.errors - from.errors).is_clear() ? from : at_rest;
 }
 
