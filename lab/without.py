@@ -48,8 +48,7 @@ MECHANISMS = {
     "fine part of the kernel": with_setting(".fine = 0.0"),
     "outliers of the learner": with_setting(".outlier = OutlierRule::none"),
     "robust members": ("learner/sparse_regression.cpp",
-                       "return share < 1.0 ? share * share : 1.0;",
-                       "return share > 0.0 ? 1.0 : share;"),
+                       "return share * share;", "return share > 0.0 ? 1.0 : share;"),
     "independent samples": ("learner/error_correlation.cpp",
                             "rows_per_sample_ = (1.0 + next) / (1.0 - next);",
                             "rows_per_sample_ = next > 2.0 ? next : 1.0;"),
@@ -71,6 +70,11 @@ MECHANISMS = {
     "guard against garbage": ("model/guarded_axis.cpp",
                               "  const bool implausible = trusted().scaling() != nullptr && ",
                               "  const bool implausible = false && "),
+    "expected targets": ("model/guarded_axis.cpp", "return implausible ? !expected(x, y) :",
+                         "return implausible ? true :"),
+    "changes beside constant errors": ("model/change_monitor.cpp",
+                                       "(start.over_constant > kChange.over_constant &&",
+                                       "(start.over_constant >= 0.0 &&"),
 }
 
 
