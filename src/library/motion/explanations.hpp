@@ -16,7 +16,7 @@ namespace kelpie {
 inline constexpr std::size_t kMostColumns = 24;  ///< of one Agreement
 
 /// The columns of a load, in their order: the first axis takes a share of the acceleration of the
-/// second axis, kTurning: of r². The last six are of a load off the centre of surge, sway and yaw.
+/// second axis, kTurning: of r². All nine are of a load off the centre of surge, sway and yaw.
 struct LoadColumn {
   static constexpr std::size_t kTurning = 6;
   std::size_t on;

@@ -211,7 +211,7 @@ TEST_F(NamedCause, IsTakenBackWhereRowsContradict) {
 
 TEST_F(NamedCause, IsTakenBackWithTheFinding) {
   const Cause half{CauseKind::thruster, kCommands[0], 0.5, 0.45, 0.55};
-  PlanarDrive drive = damaged(kStep, 360.0, 4.0, 0.5);
+  const PlanarDrive drive = damaged(kStep, 360.0, 4.0, 0.5);
   watch(monitor_, drive);
   EXPECT_EQ(monitor_.disbelieve_cause(), Event::none);
   ASSERT_EQ(monitor_.believe_cause(half, 360.0), Event::changed);
