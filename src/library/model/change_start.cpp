@@ -24,6 +24,16 @@ double robust_log_density(double error, double variance) {
   return -0.5 * (square + std::log(variance));
 }
 
+// An error of `left`, of noise and of a size with the effect `unit`, tells of the size (Kalman
+// 1960).
+void update_size(LoneCause& one, double unit, double left, double noise, double tau) {
+  const double spread = unit * unit * one.variance;
+  const double weight = robust_weight(left, noise + spread) / tau;
+  const double gain = one.variance * unit / (noise / weight + spread);
+  one.size += gain * left;
+  one.variance *= 1.0 - gain * unit;
+}
+
 double log_density(double error, double variance) {
   return -0.5 * (error * error / variance + std::log(variance));
 }
@@ -33,6 +43,12 @@ double log_density(double error, double variance) {
 double robust_weight(double error, double variance) {
   const double far = kHuber * kHuber * variance;
   return error * error > far ? far / (error * error) : 1.0;
+}
+
+void LoneCause::visit(Archive& archive) {
+  for (double* const number : {&size, &variance, &likelihood}) {
+    archive.number(*number);
+  }
 }
 
 void CommandEffect::add(const CauseEffects& effects, std::size_t command, double weight) {
@@ -116,17 +132,14 @@ void ChangeStart::observe_lone(std::size_t axis, const CauseEffects& effects, do
     const double left = error - unit * one.size;
     const double variance = noise + unit * unit * one.variance;
     one.likelihood += (robust_log_density(left, variance) - unchanged) / tau[axis];
-    const double weight = robust_weight(left, variance) / tau[axis];
-    const double gain = one.variance * unit / (noise / weight + unit * unit * one.variance);
-    one.size += gain * left;
-    one.variance *= 1.0 - gain * unit;
+    update_size(one, unit, left, noise, tau[axis]);
     if (one.likelihood <= 0.0) {
       one = kUnknown;
     }
   }
 }
 
-ConstantError ChangeStart::unknown_constant(std::size_t axis) const {
+LoneCause ChangeStart::unknown_constant(std::size_t axis) const {
   const double deviation = kStart.constant_errors * scatter[axis];
   return {.variance = deviation * deviation};
 }
@@ -136,13 +149,10 @@ ConstantError ChangeStart::unknown_constant(std::size_t axis) const {
 // speed.
 double ChangeStart::constant_log_density(std::size_t axis, double error, double noise,
                                          double unchanged) {
-  ConstantError& one = constant[axis];
-  const double left = error - one.value;
+  LoneCause& one = constant[axis];
+  const double left = error - one.size;
   const double variance = noise + one.variance;
-  const double weight = robust_weight(left, variance) / tau[axis];
-  const double gain = one.variance / (noise / weight + one.variance);
-  one.value += gain * left;
-  one.variance *= 1.0 - gain;
+  update_size(one, 1.0, left, noise, tau[axis]);
   const double density = log_density(left, variance);
   one.likelihood += (density - unchanged) / tau[axis];
   if (one.likelihood <= 0.0) {
@@ -210,20 +220,12 @@ void ChangeStart::visit(Archive& archive) {
        {&begun_s, &life_s, &evidence, &over_constant, &samples, &peak, &likelihood}) {
     archive.number(*number);
   }
-  for (ConstantError& one : constant) {
-    archive.number(one.value);
-    archive.number(one.variance);
-    archive.number(one.likelihood);
-  }
+  std::ranges::for_each(constant, [&](LoneCause& one) { one.visit(archive); });
   for (std::vector<double>* const values : {&theta, &size, &covariance, &scatter, &tau}) {
     archive.numbers(*values);
   }
   std::ranges::for_each(effect, [&](CommandEffect& one) { one.visit(archive); });
-  for (LoneCause& one : lone) {
-    for (double* const number : {&one.size, &one.variance, &one.likelihood}) {
-      archive.number(*number);
-    }
-  }
+  std::ranges::for_each(lone, [&](LoneCause& one) { one.visit(archive); });
 }
 
 }  // namespace kelpie

@@ -14,14 +14,8 @@ struct LoneCause {
   double size = 0.0;
   double variance = 0.0;
   double likelihood = 0.0;  ///< over no change [nats]
-};
 
-/// An error of one axis that has been constant for some time, and nothing else: a disturbance, or
-/// the model's own error where the vehicle holds its speed.
-struct ConstantError {
-  double value = 0.0;
-  double variance = 0.0;
-  double likelihood = 0.0;  ///< over no error [nats]
+  void visit(Archive& archive);  ///< core/archive.hpp
 };
 
 /// The value of one axis at one row, and the effect of every cause on this value.
@@ -77,24 +71,26 @@ struct ChangeStart {
   bool alive = false;
   double begun_s = 0.0;
   double life_s = 0.0;
-  double evidence = 0.0;                ///< over the vehicle without a change [nats]
-  double over_constant = 0.0;           ///< the same over constant errors alone, never below 0
-  double samples = 0.0;                 ///< independent samples so far
-  double peak = 0.0;                    ///< largest evidence after a row [nats]
-  double likelihood = 0.0;              ///< of all sizes together, over no change [nats]
-  std::vector<double> theta;            ///< Θ₀, axis after axis
-  std::vector<double> size;             ///< mean of s
-  std::vector<double> covariance;       ///< of s
-  std::vector<LoneCause> lone;          ///< each cause, then drag of all axes, then inertia of all
-  std::vector<ConstantError> constant;  ///< of each axis
-  std::vector<double> scatter;          ///< usual error of each axis
-  std::vector<double> tau;              ///< rows per independent sample of each axis
-  std::vector<CommandEffect> effect;    ///< of each command
+  double evidence = 0.0;           ///< over the vehicle without a change [nats]
+  double over_constant = 0.0;      ///< the same over constant errors alone, never below 0
+  double samples = 0.0;            ///< independent samples so far
+  double peak = 0.0;               ///< largest evidence after a row [nats]
+  double likelihood = 0.0;         ///< of all sizes together, over no change [nats]
+  std::vector<double> theta;       ///< Θ₀, axis after axis
+  std::vector<double> size;        ///< mean of s
+  std::vector<double> covariance;  ///< of s
+  std::vector<LoneCause> lone;     ///< each cause, then drag of all axes, then inertia of all
+  /// The error of each axis that has been constant for some time, as the only cause: a disturbance,
+  /// or the model's own error where the vehicle holds its speed.
+  std::vector<LoneCause> constant;
+  std::vector<double> scatter;        ///< usual error of each axis
+  std::vector<double> tau;            ///< rows per independent sample of each axis
+  std::vector<CommandEffect> effect;  ///< of each command
 
  private:
   void observe_lone(std::size_t axis, const CauseEffects& effects, double error, double noise,
                     double unchanged);
-  ConstantError unknown_constant(std::size_t axis) const;
+  LoneCause unknown_constant(std::size_t axis) const;
   double constant_log_density(std::size_t axis, double error, double noise, double unchanged);
 
   std::vector<double> gain_;  ///< scratch

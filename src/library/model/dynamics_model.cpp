@@ -223,7 +223,7 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
 void DynamicsModel::Parts::believe_diagnosis() {
   const std::span<const Finding> findings = diagnosis->findings();
   if (const std::optional<std::size_t> command = change->named_command();
-      command && !still_named(findings, *command, named_since_s)) {
+      command && !still_named(findings, *command, change->since())) {
     apply_change(change->disbelieve_cause());
   }
   if (findings.empty()) {

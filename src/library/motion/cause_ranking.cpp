@@ -73,16 +73,15 @@ class Ranker {
 
   // Whether each cause of a choice has a size that matters.
   bool matter(const Choice& choice) const {
-    const Explanation& one = list_[choice.one];
-    return matters(one, choice.agreement.size[0]) &&
-           (choice.one == choice.other ||
-            matters(list_[choice.other], choice.agreement.size[one.columns.size()]));
+    return all_of(choice, [&](std::size_t cause, std::size_t first) {
+      return matters(list_[cause], choice.agreement.size[first]);
+    });
   }
 
   bool are_plausible(const Choice& choice) const {
-    const std::size_t count = list_[choice.one].columns.size();
-    return is_plausible(choice.one, choice.agreement, 0) &&
-           (choice.one == choice.other || is_plausible(choice.other, choice.agreement, count));
+    return all_of(choice, [&](std::size_t cause, std::size_t first) {
+      return is_plausible(cause, choice.agreement, first);
+    });
   }
 
   bool overlap(std::size_t i, std::size_t j) const {
@@ -110,6 +109,13 @@ class Ranker {
   }
 
  private:
+  // Whether `test` holds of each cause of a choice and the place of its first size.
+  template <typename Test>
+  bool all_of(const Choice& choice, Test test) const {
+    return test(choice.one, std::size_t{0}) &&
+           (choice.one == choice.other || test(choice.other, list_[choice.one].columns.size()));
+  }
+
   bool is_plausible(std::size_t cause, const Agreement& agreement, std::size_t first) const {
     const std::size_t count = list_[cause].columns.size();
     return list_[cause].kind != CauseKind::load ||
