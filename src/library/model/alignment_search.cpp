@@ -126,8 +126,8 @@ AlignmentSearch::Scored AlignmentSearch::pulses_at_rest(Scored from) {
   for (std::size_t k = 0; k < range_.size(); ++k) {
     const double highest = lowest_[k] + range_[k];
     const double side = std::min(kNeutralPulseUs - lowest_[k], highest - kNeutralPulseUs);
-    if (range_[k] > 0.0 && are_servo_pulses(lowest_[k], highest) &&
-        side >= kSearch.pulse_side * range_[k] && usual.actuators[k].none()) {
+    if (are_pulses_about_rest(lowest_[k], highest) && side >= kSearch.pulse_side * range_[k] &&
+        usual.actuators[k].none()) {
       usual.actuators[k].neutral = kNeutralPulseUs;
     }
   }

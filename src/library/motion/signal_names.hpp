@@ -24,4 +24,9 @@ inline bool are_servo_pulses(double lowest, double highest) {
   return lowest >= 800.0 && highest <= 2200.0;
 }
 
+/// The same, to both sides of rest: thrust of both directions.
+inline bool are_pulses_about_rest(double lowest, double highest) {
+  return are_servo_pulses(lowest, highest) && lowest < kNeutralPulseUs && highest > kNeutralPulseUs;
+}
+
 }  // namespace kelpie

@@ -55,9 +55,8 @@ bool is_taken(const std::string& name) {
 
 // Pulses of servos and motor controllers, to both sides of rest.
 bool are_pulses(const CandidateColumn& command) {
-  return are_servo_pulses(command.low, command.high) && command.low < kNeutralPulseUs &&
-         command.high > kNeutralPulseUs && command.low == std::floor(command.low) &&
-         command.high == std::floor(command.high);
+  return are_pulses_about_rest(command.low, command.high) &&
+         command.low == std::floor(command.low) && command.high == std::floor(command.high);
 }
 
 // Short names for commands, all different, of letters, digits and "_": the words of a column that

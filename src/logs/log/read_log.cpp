@@ -230,8 +230,7 @@ void add_neutral_pulses(const Table& table, Roles& roles) {
       high = std::fmax(high, value);
       return !std::isfinite(value) || value == std::floor(value);
     });
-    if (is_whole && are_servo_pulses(low, high) && low < kNeutralPulseUs &&
-        high > kNeutralPulseUs) {
+    if (is_whole && are_pulses_about_rest(low, high)) {
       roles.actuators[input] = {.neutral = kNeutralPulseUs};
     }
   }

@@ -29,6 +29,7 @@
 #include "kelpie/model/trained_model.hpp"
 #include "model/six_axis_fit.hpp"
 #include "model/snapshot.hpp"
+#include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
@@ -99,7 +100,7 @@ study::Nominal nominal_of(const std::string& file, const LearnArguments& options
   }
   const std::size_t states =
       find_states(settings.states, data.input_names, data.target_names.size()).size();
-  const double neutral = plan.alignment.alignment.actuators.empty() ? study::kRestUs : 0.0;
+  const double neutral = plan.alignment.alignment.actuators.empty() ? kNeutralPulseUs : 0.0;
   return study::nominal_of(vehicle::read_vehicle(file), data, settings.states, terms,
                            body_frame(options.frame, states == kSixAxes), neutral);
 }

@@ -23,6 +23,7 @@
 #include "format/drive_files.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
+#include "motion/signal_names.hpp"
 #include "motion/tuning.hpp"
 #include "report/drive_report.hpp"
 #include "study/drive_plan.hpp"
@@ -172,7 +173,7 @@ format::PlannedDrive planned_on_six_axes(const DriveArguments& options,
   const ExpectedSixAxisFit expected =
       study::of_log(data, [&] { return ExpectedSixAxisFit(rows, log->how); });
   DrivenThrusters thrusters{{}, rows.commands, [&](std::size_t thruster, double command) {
-                              return study::command_share(file, thruster, command, study::kRestUs);
+                              return study::command_share(file, thruster, command, kNeutralPulseUs);
                             }};
   for (const PlacedThruster& thruster : rows.thrusters) {
     thrusters.names.push_back(thruster.name);

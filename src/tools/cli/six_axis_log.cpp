@@ -27,7 +27,7 @@ std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions
   }
   log.columns = *columns;
   log.frame = body_frame(six.frame, true);
-  log.neutral = log.plan.alignment.alignment.actuators.empty() ? study::kRestUs : 0.0;
+  log.neutral = log.plan.alignment.alignment.actuators.empty() ? kNeutralPulseUs : 0.0;
   log.how = {.start = {.lag_s = find_times ? 0.1 : 0.0}, .find_times = find_times};
   return log;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/log_options.hpp"
+#include "motion/signal_names.hpp"
 #include "study/six_axes.hpp"
 
 namespace kelpie::cli {
@@ -23,7 +24,7 @@ struct SixAxisLog {
   study::LearnPlan plan;
   study::SixAxisColumns columns;
   Frame frame = Frame::frd;
-  double neutral = study::kRestUs;  ///< as of study::six_axis_rows()
+  double neutral = kNeutralPulseUs;  ///< as of study::six_axis_rows()
   SixAxisSettings how{};
 };
 

@@ -201,7 +201,7 @@ SixAxisRows six_axis_rows(const std::vector<vehicle::SixAxisRow>& log,
     rows.down.insert(rows.down.end(), down.begin(), down.end());
     for (std::size_t k = 0; k < vehicle.thrusters.size(); ++k) {
       rows.commands.push_back(
-          command_share(vehicle, k, row.commands(static_cast<Eigen::Index>(k)), kRestUs));
+          command_share(vehicle, k, row.commands(static_cast<Eigen::Index>(k)), kNeutralPulseUs));
     }
     if (has_battery) {
       rows.volts.push_back(row.voltage_v);

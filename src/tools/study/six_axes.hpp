@@ -19,8 +19,6 @@
 
 namespace kelpie::study {
 
-inline constexpr double kRestUs = 1500.0;  ///< pulse at rest
-
 /// Roles of a log's columns in identification on six axes: places among inputs and targets.
 struct SixAxisColumns {
   std::array<std::size_t, kSixAxes> velocities{};
