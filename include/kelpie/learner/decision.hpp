@@ -13,8 +13,8 @@ namespace kelpie {
 /// The outcome of the including node for one sample.
 enum class Verdict : std::uint8_t {
   accepted,     ///< added to the buffer and learned
-  explained,    ///< rejected by eq. (9): close to a support vector and inside the tube
-  duplicate,    ///< rejected by eq. (10): close to a support vector with the same target
+  explained,    ///< rejected by eq. (9): close to a sample kept, and inside the tube
+  duplicate,    ///< rejected by eq. (10): close to a sample kept with the same target
   invalid,      ///< rejected: a NaN, a value beyond ±1e50, or a wrong number of inputs
   held_back,    ///< stored until the scale of the data is known, then learned
   implausible,  ///< rejected: too far from all earlier samples

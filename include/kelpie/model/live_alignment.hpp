@@ -71,7 +71,7 @@ class LiveAlignment {
   bool is_due() const { return seen_ >= next_search_ && kept_ >= kFirstSearch; }
 
   /// Searches the kept rows; `afresh`: without regard to the present alignment, as for a log. Cost:
-  /// 21 fits, and 50 by kernel: up to 0.3 s for 4000 rows of 9 columns. Allocates. A copy can
+  /// 50 fits, and 50 more per command (find_alignment()). Allocates. A copy can
   /// search in another thread while this object takes rows.
   AlignmentResult search(bool afresh = false) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -50,6 +51,10 @@ class AttitudeMotion {
   static constexpr std::size_t kMostInputs = 4;
   /// The inputs to integrate: at most kMostInputs.
   const std::vector<std::size_t>& inputs() const { return inputs_; }
+  /// Whether an input is an angular velocity that moves the attitude.
+  bool follows(std::size_t input) const {
+    return std::ranges::find(turning_, std::optional(input)) != turning_.end();
+  }
   /// Their derivatives at the inputs x, in the units of the inputs per second. Allocates nothing.
   void rates(std::span<const double> x, std::span<double> rates) const;
 

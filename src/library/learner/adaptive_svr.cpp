@@ -69,6 +69,7 @@ Decision AdaptiveSvr::update(std::span<const double> z, double y, double t,
   const double error = adaptive ? error_without_short_range(champion_, z, y) : 0.0;
   const double other = trying ? error_without_short_range(1 - champion_, z, y) : 0.0;
   Decision decision = mutable_champion().update(z, y - change()(z), t);
+  add_change();  // a copy for later has the function of this sample
   if (adaptive && decision.verdict != Verdict::invalid && decision.had_model) {
     const bool comparable = trying && teach_challenger(z, y, t);
     if (task_ != SliceTask::recall) {

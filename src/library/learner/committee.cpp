@@ -190,11 +190,9 @@ void Committee::reset() {
 }
 
 void Committee::reset_for_new_vehicle() {
+  const auto all = fits_->all();
   fits_->precise.weaken();
-  fits_->memory.clear();
-  fits_->physics.clear();
-  fits_->line.clear();
-  fits_->mean.clear();
+  std::ranges::for_each(std::span(all).subspan(1), &SparseRegression::clear);
 }
 
 void Committee::relearn_buffer(int rounds) {
@@ -378,10 +376,7 @@ void Committee::rescale_fits(const SampleMap& map) {
   const auto factors = std::span<const double>(sample_).subspan(buffer.kernel().inputs());
   seen_.rescale(gain, offset);
   seen_terms_.rescale(factors);
-  const auto all = fits_->all();
-  const std::span<SparseRegression* const> fits(all);
-  std::ranges::for_each(fits.first(Fits::kWithKernels), &SparseRegression::clear);
-  for (SparseRegression* const fit : fits.subspan(Fits::kWithKernels)) {
+  for (SparseRegression* const fit : fits_->all()) {
     fit->rescale(factors, gain, offset);
   }
   to_learn_.begin(buffer, 1);

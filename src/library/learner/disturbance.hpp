@@ -21,7 +21,7 @@ namespace kelpie {
 /// autocorrelation ρ at one step.
 ///
 /// Bounded: f + d lies within 3 usual errors of the range of f, y₋₁ and 2 y₋₁ − y₋₂, and d moves no
-/// prediction further out of the range of the targets seen.
+/// prediction further out of the range of the targets seen than a quarter of the width.
 /// Robust: a target at a distance of more than 10 usual errors is a suspect, learned only after
 /// confirmation by the next target. Until then the suspect is weighted by the fraction of earlier
 /// suspects that were confirmed. No sample weighs more than a hundred usual samples. After a pause

@@ -16,7 +16,7 @@ namespace kelpie {
 ///
 /// with the autocorrelation ρ_l at the shortest of the lags 1, 2, 4 … 256 where ρ_l < 1/2: errors
 /// are smooth from one sample to the next at a high rate, and the lag is in proportion to the rate.
-/// Allocates nothing.
+/// ρ at lag 256 is the largest: τ is 739 at most. Allocates nothing.
 class ErrorCorrelation {
  public:
   ErrorCorrelation();

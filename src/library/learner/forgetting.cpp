@@ -48,7 +48,7 @@ double Forgetting::score(const SampleCollector& buffer, std::size_t i, double no
     case ForgetRule::paper:  // eq. (7); a time before 0 has no root
       return buffer.density().at(i) / (std::sqrt(std::max(buffer.time(i), 0.0)) + k_);
     case ForgetRule::age:  // the same trade on the age, so that the clock's zero plays no part
-      return buffer.density().at(i) * (std::sqrt(now - buffer.time(i)) + k_);
+      return buffer.density().at(i) * (std::sqrt(std::max(now - buffer.time(i), 0.0)) + k_);
   }
   return 0.0;
 }

@@ -8,11 +8,6 @@
 #include "learner/tuning.hpp"
 
 namespace kelpie {
-namespace {
-
-// All in the past model's usual errors.
-
-}  // namespace
 
 ModelTrial::ModelTrial(std::size_t dimension, std::size_t models)
     : scores_(models), last_(dimension, 1) {}

@@ -128,7 +128,7 @@ void PastModels::promote_challenger(double since_s) {
 
 void PastModels::withdraw() {
   enter(State::settling);
-  if (kept_as_) {
+  if (kept_as_ && models_[*kept_as_].info.recalls > 0) {  // else a copy made on probation
     --models_[*kept_as_].info.recalls;
   }
   set_in_service(before_, from_s_);

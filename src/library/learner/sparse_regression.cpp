@@ -60,6 +60,7 @@ void SparseRegression::learn(std::span<const double> z, double y, bool successiv
   }
   as_vector(features_) *= root;
   fit_.add(features_, root * y);
+  known_rows_ += root * root;
 }
 
 double SparseRegression::term_error(std::size_t k) const {
@@ -80,17 +81,21 @@ void SparseRegression::shift(std::span<const double> step) {
 
 void SparseRegression::doubt_terms(double samples) {
   const double rows = samples * correlation_.rows_per_sample();
-  const auto known = static_cast<double>(fit_.rows());
-  if (known > rows) {
+  if (known_rows_ > rows) {
     std::ranges::fill(features_, 1.0);
-    std::ranges::fill(std::span(features_).first(first_centre()), std::sqrt(rows / known));
+    std::ranges::fill(std::span(features_).first(first_centre()), std::sqrt(rows / known_rows_));
     fit_.forget(features_);
+    known_rows_ = rows;
   }
 }
 
 void SparseRegression::rescale(std::span<const double> factors, double gain, double offset) {
-  usual_error_.clear();
   correlation_.rescale(gain);
+  if (settings_.most_centres > 0) {
+    clear();
+    return;
+  }
+  usual_error_.clear();
   if (fit_.rows() == 0) {
     return;
   }
@@ -136,6 +141,7 @@ void SparseRegression::start_over() {
 
 void SparseRegression::forget_samples() {
   fit_.set_prior(expected_, information_);
+  known_rows_ = 0.0;
   publish();
 }
 
@@ -151,6 +157,7 @@ void SparseRegression::imitate(const SvrFunction& function, const SampleStore& p
     as_vector(features_) *= root;
     fit_.add(features_, root * function(z));
   }
+  known_rows_ = kOnline.members.imitated;
   if (alike && centres_.size() == known) {
     set_coefficients(function);
   }
@@ -179,6 +186,7 @@ void SparseRegression::visit(Archive& archive) {
   archive.numbers(information_);
   archive.part("usual error", usual_error_);
   archive.part("correlation", correlation_);
+  archive.number(known_rows_);
   archive.whole(samples_);
   if (archive.loading()) {
     for (std::size_t j = 0; j < centres_.size(); ++j) {

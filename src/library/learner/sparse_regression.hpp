@@ -77,8 +77,9 @@ class SparseRegression {
   /// weights, and what is known of the kernel part, stay. Cost O(m²). Allocates nothing.
   void doubt_terms(double samples);
 
-  /// Samples have another scale: term k becomes factors[k] φ_k, the target gain · y + offset.
-  /// Forgets the usual error alone. Requires a linear regression, a positive factor per term,
+  /// Samples have another scale: term k becomes factors[k] φ_k, the target gain · y + offset. A
+  /// linear regression forgets the usual error alone; kernels have other places in another scale,
+  /// and a regression with kernels forgets as by clear(). Requires a positive factor per term,
   /// gain > 0. Cost O(m²). Allocates nothing.
   void rescale(std::span<const double> factors, double gain, double offset);
 
@@ -135,6 +136,7 @@ class SparseRegression {
   std::vector<double> information_;  ///< of `expected_`: the prior
   RobustScale usual_error_{kOnline.members.error_least, kOnline.members.error_every};
   ErrorCorrelation correlation_;
+  double known_rows_ = 0.0;  ///< rows behind the terms' weights
   std::int64_t samples_ = 0;
   SvrFunction model_;
 };

@@ -219,9 +219,12 @@ void AlignedRows::rest() {
 }
 
 bool AlignedRows::ends_before(double t) const {
+  if (count_ == 0) {
+    return false;
+  }
   const std::size_t width = inputs_ + targets_ + 1;
-  return count_ > 0 &&
-         t - ring_[(count_ - 1) % (distance_ + 1) * width + width - 1] > longest_step_s_;
+  const double step_s = t - ring_[(count_ - 1) % (distance_ + 1) * width + width - 1];
+  return step_s < 0.0 || step_s > longest_step_s_;
 }
 
 std::span<double> AlignedRows::slot(std::size_t row) {

@@ -75,7 +75,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
 
 ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<const double> y,
                                            double t) {
-  if (t - row_s_ < kChange.step_s) {
+  if (t - row_s_ < kChange.step_s * kAlmost) {
     return Event::none;
   }
   row_s_ = t;
@@ -438,6 +438,7 @@ void ChangeMonitor::end_all_starts() {
 void ChangeMonitor::restart() {
   fit_.clear();
   std::ranges::for_each(scatter_, &RobustScale::clear);
+  std::ranges::fill(usual_effect_, CommandEffect{});
   end_all_starts();
   believed_s_ = row_s_;
   samples_ = 0.0;

@@ -26,7 +26,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "24";  // of the archive of all classes together
+constexpr const char* kStateVersion = "25";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -116,6 +116,10 @@ bool is_refused(const Decision& decision) {
   return decision.verdict == Verdict::invalid || decision.verdict == Verdict::implausible;
 }
 
+bool is_news(const Decision& decision) {
+  return decision.changed || decision.withdrawn || decision.returning;
+}
+
 }  // namespace
 
 struct DynamicsModel::Parts {
@@ -123,6 +127,7 @@ struct DynamicsModel::Parts {
         ModelSettings model_settings, const AxisScaling* scaling);
 
   void order_axes();
+  bool trusts_sample() const;
   void monitor_change(std::span<const double> x, std::span<const double> y, double t);
   void believe_diagnosis();
   void apply_change(ChangeMonitor::Event event);
@@ -201,18 +206,21 @@ void DynamicsModel::Parts::order_axes() {
   }
 }
 
+// The last sample, on all axes: what is of the vehicle, not of an axis, learns only such samples.
+bool DynamicsModel::Parts::trusts_sample() const {
+  return std::ranges::all_of(axes, &GuardedAxis::trusted_last) &&
+         std::ranges::none_of(state.decisions, is_refused);
+}
+
 // All axes together show a change of the vehicle; the members of all axes follow.
 void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<const double> y,
                                           double t) {
-  auto& decisions = state.decisions;
-  if (std::ranges::any_of(decisions, [](const Decision& decision) {
-        return decision.changed || decision.withdrawn || decision.returning;
-      })) {
-    change->restart();
+  if (!change) {
     return;
   }
-  if (std::ranges::all_of(decisions, &Decision::had_model) &&
-      std::ranges::none_of(decisions, is_refused)) {
+  if (std::ranges::any_of(state.decisions, is_news)) {
+    change->restart();
+  } else if (trusts_sample() && std::ranges::all_of(state.decisions, &Decision::had_model)) {
     apply_change(change->update(x, y, t));
   }
 }
@@ -259,7 +267,7 @@ void DynamicsModel::Parts::apply_change(ChangeMonitor::Event event) {
 
 void DynamicsModel::Parts::update_diagnosis(std::span<const double> x, std::span<const double> y,
                                             double t) {
-  if (!diagnosis) {
+  if (!diagnosis || !trusts_sample()) {
     return;
   }
   diagnosis->update(x, y, t);
@@ -270,7 +278,13 @@ void DynamicsModel::Parts::update_diagnosis(std::span<const double> x, std::span
 
 void DynamicsModel::Parts::observe_steady(std::span<const double> x, std::span<const double> y,
                                           double t) {
-  if (!steady || std::ranges::any_of(state.decisions, is_refused)) {
+  if (!steady) {
+    return;
+  }
+  if (std::ranges::any_of(state.decisions, &Decision::changed)) {
+    steady->restart();
+  }
+  if (!trusts_sample()) {
     return;
   }
   const Accelerations learned = [this](std::span<const double> at, std::span<double> a) {
@@ -357,22 +371,13 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
     }
   }
   state.share_changes([&](std::size_t i) -> OnlineRegressor& { return model.axes[i]; });
-  // What is of the vehicle, not of an axis, learns only samples that all axes trust.
-  const bool is_trusted = std::ranges::all_of(model.axes, &GuardedAxis::trusted_last);
-  if (model.change && is_trusted) {
-    model.monitor_change(x, y, now);
-  }
+  model.monitor_change(x, y, now);
   model.work.learned(state.crowded_out());
   for (GuardedAxis& axis : model.axes) {
     axis.limit(model.budget);  // a grant is good for one update only
   }
-  if (model.steady && std::ranges::any_of(state.decisions, &Decision::changed)) {
-    model.steady->restart();
-  }
-  if (is_trusted) {
-    model.update_diagnosis(x, y, now);
-    model.observe_steady(x, y, now);
-  }
+  model.update_diagnosis(x, y, now);
+  model.observe_steady(x, y, now);
   state.stamp_changes();
 }
 

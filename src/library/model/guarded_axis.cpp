@@ -94,6 +94,7 @@ GuardedAxis::GuardedAxis(std::size_t inputs, const SharedSettings& shared,
       guarded_(shared.track > 0.0),
       first_(inputs),
       young_until_(arguments_.scaling ? -kNever : kNever),
+      held_from_(-kNever),
       refused_(inputs),
       before_(-kNever),
       feed_(inputs, 2 * ThinnedRows::kMost) {}
@@ -104,6 +105,16 @@ void GuardedAxis::limit(const Budget& budget) {
 
 void GuardedAxis::alert(double since_s, bool another) {
   trusted().alert(since_s, another);
+}
+
+void GuardedAxis::apply_change(std::span<const CommandGain> gains, std::span<const double> step,
+                               const Decision& news) {
+  trusted().apply_change(gains, step, news);
+  if (probation_ || former_kept_) {
+    candidate().apply_change(gains, step, news);
+    begun_with_.changes += news.changed ? 1 : 0;  // one change of the vehicle, in both tallies
+    begun_with_.withdrawn += news.withdrawn ? 1 : 0;
+  }
 }
 
 void GuardedAxis::resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) {
@@ -199,6 +210,10 @@ Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double 
 Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t,
                                     const Prediction& said) {
   trusted_last_ = false;
+  if (probation_ && !feeds_trusted_ && t - doubted_s_ > kGuard.stale_s) {
+    renew_candidate(t);
+  }
+  doubted_s_ = t;
   refused_.add(x, y, t);
   Decision decision{.verdict = Verdict::held_back,
                     .prediction = said,
@@ -248,6 +263,7 @@ void GuardedAxis::begin_probation(double t) {
   probation_ = true;
   evidence_ = {};
   convincing_from_ = t + kGuard.convinced_s;
+  doubted_s_ = t;
   run_ = 0;
   feed_.drop_oldest(feed_.size());
 }
@@ -264,6 +280,16 @@ void GuardedAxis::begin_candidate(double t) {
   for (std::size_t i = 0; i < refused_.size(); ++i) {
     feed_.hold(refused_[i].x, refused_[i].y, refused_[i].t);
   }
+}
+
+void GuardedAxis::renew_candidate(double t) {
+  if (refused_.size() == 0) {
+    drop_candidate();
+    return;
+  }
+  const double convincing_from = convincing_from_;
+  begin_candidate(t);
+  convincing_from_ = convincing_from;
 }
 
 void GuardedAxis::drop_candidate() {
@@ -453,6 +479,7 @@ void GuardedAxis::visit(Archive& archive) {
   archive.whole(run_);
   archive.whole(passed_);
   archive.number(run_since_);
+  archive.number(doubted_s_);
   archive.number(recent_);
   archive.number(share_);
   archive.any_number(before_);

@@ -24,9 +24,11 @@ namespace kelpie {
 /// learns implausible samples, or samples among these. When implausible samples have come for half
 /// a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of the
 /// candidate follows. The candidate is in service after inputs more than 10 standard deviations
-/// away, the trusted axis after all other samples. The candidate takes the place of the trusted
-/// axis when implausible samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when
-/// the candidate explains half of the variance of these samples.
+/// away, the trusted axis after all other samples. After a minute without such samples the
+/// candidate begins as a copy again, since the trusted axis has learned meanwhile, and learns the
+/// implausible samples kept. The candidate takes the place of the trusted axis when implausible
+/// samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when the candidate
+/// explains half of the variance of these samples.
 ///
 /// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
 /// for 60 s after a candidate took over, the guard looks every 5 s at the later half of the
@@ -70,11 +72,9 @@ class GuardedAxis final : public OnlineRegressor {
   /// Of the trusted axis.
   std::vector<StoredPastModel> past_models() const { return trusted().past_models(); }
 
-  /// DynamicsAxis::apply_change() of the trusted axis.
+  /// DynamicsAxis::apply_change() of the trusted axis, and of an axis that may take its place.
   void apply_change(std::span<const CommandGain> gains, std::span<const double> step,
-                    const Decision& news) {
-    trusted().apply_change(gains, step, news);
-  }
+                    const Decision& news);
 
   /// DynamicsAxis::expect_vehicle(). A further axis that begins anew begins with these, too.
   void expect_vehicle(std::vector<double> coefficients) {
@@ -139,6 +139,7 @@ class GuardedAxis final : public OnlineRegressor {
   void doubt(double t);
   void begin_probation(double t);
   void begin_candidate(double t);
+  void renew_candidate(double t);
   void drop_candidate();
   void trust_candidate(double t);
   void begin_anew(double t);
@@ -162,11 +163,12 @@ class GuardedAxis final : public OnlineRegressor {
 
   ThinnedRows first_;        ///< of a young trusted axis
   double young_until_;       ///< [s]; infinite before the first sample
-  double held_from_ = 0.0;   ///< [s], from when on inputs may have been held
+  double held_from_;         ///< [s], from when on inputs may have been held
   ThinnedRows refused_;      ///< implausible samples: of the run, or since the candidate began
   std::int64_t run_ = 0;     ///< implausible samples that no axis learned
   std::int64_t passed_ = 0;  ///< plausible samples among these
   double run_since_ = 0.0;   ///< [s]
+  double doubted_s_ = 0.0;   ///< [s], time of the last doubtful sample
   double recent_ = 0.0;      ///< of the last samples, the implausible
   double share_ = 0.0;       ///< of time with implausible samples, exponentially forgotten
   double before_;            ///< [s], time of the last sample

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/quantile.hpp"
+#include "model/seen_velocities.hpp"
 #include "model/tuning.hpp"
 
 namespace kelpie {
@@ -130,10 +131,7 @@ void OpenLoopPractice::advance(Path& path, const Accelerations& accelerations, d
     if (!std::isfinite(ahead)) {
       continue;
     }
-    const Extremes& range = seen[integrated_[i]];
-    const double leeway = kModelTuning.rollout.leeway * (range.high - range.low);
-    path.value[i] =
-        i < states_.size() ? std::clamp(ahead, range.low - leeway, range.high + leeway) : ahead;
+    path.value[i] = i < states_.size() ? bounded_velocity(seen[integrated_[i]], ahead) : ahead;
   }
   std::swap(path.before, now_);
 }

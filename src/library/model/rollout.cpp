@@ -84,10 +84,12 @@ Rollout::Rollout(OpenLoop model, RolloutSettings settings)
   require(model_.states.size() <= kMostStates, "states",
           "of a rollout are at most " + std::to_string(kMostStates));
   settings_.validate(model_.states.size());
+  bool turns_as_measured = false;
   for (const std::size_t state : settings_.measured) {
     measured_[state] = true;
+    turns_as_measured = turns_as_measured || model_.attitude.follows(model_.states[state]);
   }
-  if (settings_.measured.empty()) {
+  if (!turns_as_measured) {
     integrated_.insert(integrated_.end(), model_.attitude.inputs().begin(),
                        model_.attitude.inputs().end());
     measured_.resize(integrated_.size(), false);
@@ -200,7 +202,8 @@ void Rollout::integrate(double from, double to, double step_s) {
   const Vector k4 = rate(after(values, step_s, k3), to);
   for (std::size_t i = 0; i < integrated_.size(); ++i) {
     const double ahead = values[i] + step_s * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
-    x_[integrated_[i]] = i < model_.states.size() ? bounded_velocity(model_, i, ahead) : ahead;
+    x_[integrated_[i]] =
+        i < model_.states.size() ? bounded_velocity(seen_velocities(model_, i), ahead) : ahead;
   }
   age_s_ += step_s;
 }

@@ -233,11 +233,11 @@ std::vector<bool> plausible_samples(const WarmUp& samples, std::size_t inputs) {
     const double above = kScaleTuning.far * (quantile(column, 0.95) - median);
     const double most = std::max(below, above);
     std::ranges::transform(column, column.begin(), [](double one) { return std::abs(one); });
-    const double largest = k < inputs ? quantile(column, 0.95) : 0.0;
+    const double beyond = kScaleTuning.beyond * quantile(column, 0.95);
     for (std::size_t i = 0; i < plausible.size(); ++i) {
       const bool far = std::abs(value(i, k) - median) > most;
-      plausible[i] =
-          plausible[i] && (!far || std::abs(value(i, k)) <= kScaleTuning.beyond * largest);
+      const bool is_usual = k < inputs && std::abs(value(i, k)) <= beyond;
+      plausible[i] = plausible[i] && (!far || is_usual);
     }
   }
   return plausible;

@@ -21,10 +21,9 @@ inline double seen_width(const OpenLoop& model, std::size_t state) {
 }
 
 /// A velocity, clamped to the range seen, widened by half the width.
-inline double bounded_velocity(const OpenLoop& model, std::size_t state, double velocity) {
-  const Extremes& range = seen_velocities(model, state);
-  const double leeway = kModelTuning.rollout.leeway * (range.high - range.low);
-  return std::clamp(velocity, range.low - leeway, range.high + leeway);
+inline double bounded_velocity(const Extremes& seen, double velocity) {
+  const double leeway = kModelTuning.rollout.leeway * (seen.high - seen.low);
+  return std::clamp(velocity, seen.low - leeway, seen.high + leeway);
 }
 
 /// Step of numerical slopes of a model; 0 for a constant velocity.

@@ -379,6 +379,17 @@ void set_errors(const Eigen::MatrixXd& covariance, ParameterFit& fit) {
   }
 }
 
+// Of the usual step: gaps between stretches are no steps. 1 Hz without a step.
+double rate_hz(const SixAxisRows& rows) {
+  std::vector<double> steps_s;
+  for (std::size_t row = 1; row < rows.rows(); ++row) {
+    if (!std::ranges::binary_search(rows.starts, row)) {
+      steps_s.push_back(rows.times_s[row] - rows.times_s[row - 1]);
+    }
+  }
+  return steps_s.empty() ? 1.0 : 1.0 / std::max(quantile(steps_s, 0.5), 1e-6);
+}
+
 }  // namespace
 
 std::vector<double> thruster_speeds(const SixAxisRows& rows, const ThrustCurve& curve) {
@@ -386,10 +397,9 @@ std::vector<double> thruster_speeds(const SixAxisRows& rows, const ThrustCurve& 
   const Actuator actuator{
       .dead_band = curve.dead_band, .lag_s = curve.lag_s, .delay_s = curve.delay_s};
   std::vector<double> speeds(rows.rows() * count);
-  const double span_s = rows.rows() > 1 ? rows.times_s.back() - rows.times_s.front() : 1.0;
-  const double rate_hz = std::max(1e-3, static_cast<double>(rows.rows()) / std::max(span_s, 1e-9));
+  const double rate = rate_hz(rows);
   for (std::size_t i = 0; i < count; ++i) {
-    ActuatorState state(actuator, rate_hz);
+    ActuatorState state(actuator, rate);
     std::size_t stretch = 0;
     for (std::size_t row = 0; row < rows.rows(); ++row) {
       if (stretch < rows.starts.size() && row == rows.starts[stretch]) {

@@ -6,6 +6,10 @@
 
 namespace kelpie {
 
+/// The share of a step after which the step is over: stamps are rounded, those of five rows per
+/// second by 0.2 µs where seconds count from 1970.
+inline constexpr double kAlmost = 0.999;
+
 /// The behavioural constants of the room model, each with unit and source. "By hand": chosen by
 /// hand; no measurement recorded.
 inline constexpr struct ModelTuning {
@@ -87,6 +91,7 @@ inline constexpr struct ModelTuning {
     double confirmed_share = 0.7;       ///< reached after 36 s of implausible samples alone
     std::int64_t least_explained = 20;  ///< samples before a candidate can convince
     double convinced_s = 4.0;           ///< s of probation before a candidate can convince
+    double stale_s = 60.0;   ///< s without doubtful samples: a candidate is copied anew; by hand
     double moving = 0.3;     ///< standard deviations: targets that move less are no evidence
     double explained = 0.5;  ///< of the variance, convinces
     double clip = 3.0;       ///< largest error counted [standard deviations]

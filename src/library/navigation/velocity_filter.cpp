@@ -317,7 +317,7 @@ void VelocityFilter::keep_in_range() {
   for (Eigen::Index i = 0; i < velocities_; ++i) {
     const auto state = static_cast<std::size_t>(i);
     const double width = seen_width(model_, state);
-    mean_(i) = bounded_velocity(model_, state, mean_(i));
+    mean_(i) = bounded_velocity(seen_velocities(model_, state), mean_(i));
     if (covariance_(i, i) > width * width) {
       const double shrink = width / std::sqrt(covariance_(i, i));
       covariance_.row(i) *= shrink;

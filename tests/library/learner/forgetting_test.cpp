@@ -52,6 +52,13 @@ TEST(Forgetting, OnTrueAgeAVeryOldLonerGoesBeforeFreshNeighbours) {
   EXPECT_EQ(age.forgotten(three(ForgetRule::age, {900.0, 901.0, 0.0}), 901.0), 2U);
 }
 
+// A sample of later than now, as a candidate has that learns samples kept, has no age; NaN would
+// make this sample leave, whatever its place.
+TEST(Forgetting, ASampleOfLaterThanNowIsNew) {
+  const Forgetting age(settings(ForgetRule::age));
+  EXPECT_EQ(age.forgotten(three(ForgetRule::age, {60.0, 10.0, 20.0}), 50.0), 1U);
+}
+
 // With Unix time stamps eq. (7) has no sense of age left; the true age has no clock to depend on.
 TEST(Forgetting, TrueAgeDoesNotDependOnTheClocksZero) {
   const auto model_after = [](ForgetRule rule, double start_s) {

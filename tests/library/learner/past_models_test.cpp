@@ -118,6 +118,28 @@ TEST(PastModels, AWrongRecallIsTakenBack) {
   EXPECT_EQ(voyage.models().size(), 2U);
 }
 
+// A copy made on probation has never been recalled; the state loads all the same.
+TEST(PastModels, AChangeTakenBackAfterItsCopyLeavesASoundState) {
+  const OnlineSvrSettings settings = settings_for_plants();
+  OnlineSvr service(2, settings);
+  PastModels memory(service.buffer(), settings);
+  double time = 0.0;
+  for (const Sample& sample : wandering_stream(3, 1000)) {
+    service.update(sample.z, sample.y, time += 0.25);
+    memory.observe(sample.z, sample.y, 0.05, time);
+    if (time == 125.0) {
+      memory.promote_challenger(time);
+    }
+    if (memory.due()) {
+      memory.keep(service, service.model(), TermChange(2, 0), time);
+    }
+  }
+  memory.withdraw();
+  for (const PastModel& model : memory.models()) {
+    EXPECT_GE(model.info.recalls, 0);
+  }
+}
+
 // Two pictures of one vehicle, as two runs at once leave them.
 TEST(PastModels, TwoModelsOfOneVehicleBecomeOne) {
   Voyage earlier;

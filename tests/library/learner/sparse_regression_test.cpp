@@ -195,6 +195,46 @@ TEST(SparseRegression, ErrorsOfTermsHoldInNoiseThatLasts) {
   EXPECT_LE(inside, kRuns * 98 / 100);
 }
 
+// Of a second change a few rows later as of the first, not less: about 300 samples are kept.
+TEST(SparseRegression, DoubtedTwiceItKnowsTermsAsWellAsDoubtedOnce) {
+  RandomStream random(12, "memory");
+  SparseRegression line(2, 1, {.terms = 1});
+  const auto learn = [&](int samples) {
+    for (int i = 0; i < samples; ++i) {
+      const std::vector<double> z = sample(random);
+      line.update(z, 0.5 * z[2] + 0.2 * random.normal());
+    }
+  };
+  learn(20'000);
+  line.doubt_terms(300.0);
+  const double once = line.term_error(0);
+  learn(100);
+  line.doubt_terms(300.0);
+  EXPECT_NEAR(line.term_error(0), once, 0.15 * once);
+}
+
+// Errors of rows that go together go together in any scale.
+TEST(SparseRegression, WithKernelsItKnowsTheCorrelationOfErrorsInAnotherScale) {
+  constexpr double kGain = 100.0;
+  RandomStream random(13, "memory");
+  SparseRegression moved(2, 1, kWithKernel);
+  SparseRegression from_start(2, 1, kWithKernel);
+  double noise = 0.0;
+  const auto learn = [&](int samples, double gain) {
+    for (int i = 0; i < samples; ++i) {
+      const std::vector<double> z = sample(random);
+      noise = 0.95 * noise + 0.1 * random.normal();
+      moved.update(z, gain * (truth(z) + noise));
+      from_start.update(z, kGain * (truth(z) + noise));
+    }
+  };
+  learn(1000, 1.0);
+  moved.rescale(std::vector{1.0}, kGain, 0.0);
+  from_start.clear();
+  learn(500, kGain);
+  EXPECT_NEAR(moved.term_error(0) / from_start.term_error(0), 1.0, 1e-6);
+}
+
 TEST(SparseRegression, ClearedItLearnsAsIfItWereNew) {
   RandomStream random(9, "memory");
   SparseRegression used(2, 1, kWithKernel);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <span>
 #include <vector>
@@ -56,6 +57,20 @@ TEST(AlignedRows, TakesTheNearestCommandsOfTheSameStretchAndKeepsTheRest) {
         expected[static_cast<std::size_t>(i)].command = 100.0 + std::clamp(i + shift, first, last);
       }
       EXPECT_EQ(aligned(log_with_gap(kRows, gap), shift), expected) << gap << " " << shift;
+    }
+  }
+}
+
+// A lag runs forwards only: where the clock steps back, a new stretch begins.
+TEST(AlignedRows, AnActuatorBeginsAnewWhereTheClockStepsBack) {
+  AlignedRows rows(0, {1}, 2, 1, 10.0, {{.lag_s = 0.2}});
+  for (const double from_s : {10.0, 0.0}) {
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<double> x{0.0, i % 5 < 2 ? 1.0 : -1.0};
+      rows.push(x, std::vector{0.0}, from_s + 0.1 * i,
+                [&](std::span<const double> given, auto, double t) {
+                  EXPECT_LE(std::abs(given[1]), 1.0) << t;
+                });
     }
   }
 }

@@ -208,6 +208,33 @@ TEST(GuardedAxis, RareManoeuvresOfACalmVehicleAreLearned) {
   EXPECT_EQ(model.axis(0).status().tally.changes, 0);
 }
 
+// A glitch of two seconds makes a candidate; much later the vehicle, whose thruster has lost half
+// of the thrust since, does what it has never done. The candidate then knows the present vehicle.
+TEST(GuardedAxis, AnOldGlitchBringsNoOldVehicleBack) {
+  RandomStream random(9, "glitch");
+  Drive drive;
+  drive.inputs = {"u", "n"};
+  drive.targets = {"udot", "rdot"};
+  double speed = 0.0;
+  double command = 0.0;
+  const auto manoeuvres = [](std::size_t i) { return i >= 6000 && i < 6040; };
+  for (std::size_t i = 0; i < 6400; ++i) {
+    if (i % 20 == 0) {
+      command = random.uniform(-1.0, 1.0);
+    }
+    const double thrust = (manoeuvres(i) ? 20.0 : 1.0) * command;
+    const double effect = (i < 1000 ? 1.0 : 0.5) * thrust;
+    const double surge = effect - 0.5 * speed;
+    drive.x.push_back({speed, thrust});
+    drive.y.push_back({surge + 0.01 * random.normal(), 0.3 * effect + 0.01 * random.normal()});
+    speed += kStepS * surge;
+  }
+  put_garbage(drive, 500, 10, 1e2, Where::both);
+  DynamicsModel model = model_of(drive);
+  learn(model, drive, 0, 6100);
+  EXPECT_GT(worst_r2(model, drive, 6100, 6400), 0.95);
+}
+
 TEST(GuardedAxis, AStateOnProbationIsSavedWhole) {
   Drive drive = testing::drive(3, 1200);
   put_garbage(drive, 600, 100, 1e4, Where::both);

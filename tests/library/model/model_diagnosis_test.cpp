@@ -64,6 +64,21 @@ TEST(ModelDiagnosis, NamesTheThrusterAtSlowAndFastRates) {
   }
 }
 
+// x|x| of such a row has no square: the row is invalid for the axes and for the diagnosis.
+TEST(ModelDiagnosis, AnAbsurdRowLeavesAStateThatLoads) {
+  const auto make = [] { return DynamicsModel({"u", "r", "n1", "n2"}, {"du", "dr"}, quick(2)); };
+  DynamicsModel model = make();
+  RandomStream random(5, "absurd");
+  for (int i = 0; i < 300; ++i) {
+    std::vector<double> x;
+    for (int k = 0; k < 4; ++k) {
+      x.push_back(i % 100 == 50 ? 1e100 : random.normal());
+    }
+    model.update(x, std::vector{random.normal(), random.normal()}, 0.25 * i);
+  }
+  EXPECT_NO_THROW(DynamicsModel::resume(make(), model.save()));
+}
+
 TEST(ModelDiagnosis, IsNoneWhereNobodyKnowsWhatAVelocityIs) {
   const DynamicsModel model({"a", "b", "c"}, {"d"}, quick(1));
   EXPECT_EQ(model.diagnosis(), nullptr);

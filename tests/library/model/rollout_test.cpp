@@ -6,6 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
@@ -114,6 +117,32 @@ TEST(Rollout, TakesMeasuredStatesOverAndIntegratesTheOthers) {
   EXPECT_EQ(rollout.spread(1), 0.0);
   EXPECT_EQ(message_of<InputError>([&] { Rollout(loop, {.measured = {2}}); }),
             "measured: number 2; there are 2 velocities, counted from 0");
+}
+
+// Roll goes with the roll rate p, unless p is measured: then roll comes with the samples.
+TEST(Rollout, RollIsIntegratedWhereOnlyOtherVelocitiesAreMeasured) {
+  const std::vector<std::string> inputs{"u", "p", "phi"};
+  const std::vector<std::size_t> states{0, 1};
+  OpenLoop loop;
+  loop.accelerations = [](std::span<const double>, std::span<double> a) { a[0] = a[1] = 0.0; };
+  loop.states = states;
+  loop.error = {0.0, 0.0};
+  loop.error_time_s = {0.0, 0.0};
+  loop.noise = {0.0, 0.0};
+  loop.seen = {{-10.0, 10.0}, {-1.0, 1.0}, {-1.0, 1.0}};
+  loop.attitude = AttitudeMotion(find_attitude(inputs, false), inputs, states);
+  for (const auto& [measured, roll] : {std::pair{0, 0.3}, {1, 0.1}}) {
+    double seen = 0.0;
+    loop.accelerations = [&](std::span<const double> x, std::span<double> a) {
+      a[0] = a[1] = 0.0;
+      seen = x[2];
+    };
+    Rollout rollout(
+        loop, {.between = CommandPath::held, .measured = {static_cast<std::size_t>(measured)}});
+    rollout.start(std::array{1.0, 0.2, 0.1});
+    rollout.advance(std::array{1.0, 0.2, 0.1}, 1.0);
+    EXPECT_NEAR(seen, roll, 1e-9) << measured;
+  }
 }
 
 TEST(Rollout, SpreadGoesFromTheNoiseToTheErrorsInPractice) {

@@ -96,6 +96,20 @@ TEST_F(ScaleTrackerTest, AbsurdSamplesAreNotBelieved) {
   }
 }
 
+// Gravity with two dropouts: a target of exactly 0 is as far away as any other.
+TEST_F(ScaleTrackerTest, ADropoutOfTheTargetToZeroIsNotBelieved) {
+  RandomStream random(4, "dropout");
+  WarmUp first(1, 50);
+  for (int i = 0; i < 50; ++i) {
+    const double y = i == 10 || i == 30 ? 0.0 : 9.8 + 0.01 * random.normal();
+    first.hold(std::array{random.normal()}, y, 0.1 * i);
+  }
+  const std::vector<bool> plausible = plausible_samples(first, 1);
+  EXPECT_FALSE(plausible[10]);
+  EXPECT_FALSE(plausible[30]);
+  EXPECT_GT(std::ranges::count(plausible, true), 40);
+}
+
 // Its standard deviation says nothing of its next step.
 TEST_F(ScaleTrackerTest, ACommandThatWasHeldMayMove) {
   ScaleTracker scale = tracker();
