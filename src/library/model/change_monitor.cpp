@@ -18,6 +18,11 @@ constexpr const auto& kChange = kModelTuning.change;
 constexpr double kKept = kOnline.members.kept;
 constexpr double kBefore = -std::numeric_limits<double>::infinity();  // of all times [s]
 
+// A factor that a thruster may have, within the errors of a factor.
+bool is_thrust(double factor) {
+  return factor >= -kChange.named_deviation && factor <= kChange.most_gain;
+}
+
 std::size_t used_terms(const TermSet& terms) {
   return terms.size() <= kChange.most_terms ? terms.size()
                                             : std::min(terms.without_products(), terms.size());
@@ -32,7 +37,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       term_commands_(used_terms(terms)),
       term_drag_(used_terms(terms), states.size()),
       fit_(used_terms(terms) + 1, kChange.prior, states.size()),
-      scatter_(states.size(), RobustScale(kChange.least_errors, kChange.scatter_every)),
+      scatter_(states.size()),
       correlation_(states.size()),
       starts_(kMostStarts, ChangeStart(commands_, states.size(), columns() * states.size())),
       changed_start_(kMostStarts),
@@ -46,6 +51,8 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       phi_(columns()),
       weighted_y_(axes()),
       error_(axes()),
+      effect_(axes()),
+      usual_error_(axes()),
       effects_{.of_cause = std::vector<double>(causes() + 2),
                .square = std::vector<double>(commands.size())},
       mixed_(causes()),
@@ -111,7 +118,11 @@ ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<
 void ChangeMonitor::predict(std::span<const double> y) {
   leverage_ = fit_.leverage(phi_);
   for (std::size_t a = 0; a < axes(); ++a) {
-    error_[a] = y[a] - as_vector(fit_.theta(a)).dot(as_vector(phi_));
+    find_effects(fit_.theta(a), a);
+    error_[a] = y[a] - effects_.value;
+    const std::span<const double> effects(effects_.of_cause);
+    effect_[a] = std::hypot(as_vector(effects.first(commands_)).norm(), effects[causes()]);
+    usual_error_[a] = scatter_[a].value() * scatter_[a].ratio(effect_[a]);
   }
 }
 
@@ -130,9 +141,9 @@ double ChangeMonitor::row_weight() const {
   double tau = 1.0;
   for (std::size_t a = 0; a < axes(); ++a) {
     tau = std::max(tau, correlation_[a].rows_per_sample());
-    const double scatter = scatter_[a].value();
-    if (std::isfinite(scatter) && std::isfinite(leverage_)) {
-      weight = std::min(weight, robust_weight(error_[a], scatter * scatter * (1.0 + leverage_)));
+    const double usual = usual_error_[a];
+    if (std::isfinite(usual) && std::isfinite(leverage_)) {
+      weight = std::min(weight, robust_weight(error_[a], usual * usual * (1.0 + leverage_)));
     }
   }
   return weight / tau;
@@ -144,18 +155,16 @@ void ChangeMonitor::learn(std::span<const double> y) {
   samples_ += weight;
   for (std::size_t a = 0; std::isfinite(leverage_) && a < axes(); ++a) {
     const double error = error_[a] / std::sqrt(1.0 + leverage_);
-    if (rows_ % kChange.error_every == 0) {
-      scatter_[a].add(error);
-    }
-    if (std::isfinite(scatter_[a].value()) && scatter_[a].value() > 0.0) {
+    scatter_[a].add(error, effect_[a], rows_ % kChange.error_every == 0);
+    if (std::isfinite(usual_error_[a]) && usual_error_[a] > 0.0) {
       correlation_[a].add(
-          std::clamp(error / scatter_[a].value(), -kChange.clip_errors, kChange.clip_errors));
+          std::clamp(error / usual_error_[a], -kChange.clip_errors, kChange.clip_errors));
     }
   }
   for (std::size_t a = 0; errors_known() && a < axes(); ++a) {
     find_effects(fit_.theta(a), a);
     for (std::size_t c = 0; c < commands_; ++c) {
-      usual_effect_[c].add(effects_, c, weight / (scatter_[a].value() * scatter_[a].value()));
+      usual_effect_[c].add(effects_, c, weight / (usual_error_[a] * usual_error_[a]));
     }
   }
   const double root = std::sqrt(weight);
@@ -165,7 +174,7 @@ void ChangeMonitor::learn(std::span<const double> y) {
 }
 
 bool ChangeMonitor::errors_known() const {
-  return std::ranges::all_of(scatter_, [](const RobustScale& scatter) {
+  return std::ranges::all_of(scatter_, [](const ErrorsByEffect& scatter) {
     return std::isfinite(scatter.value()) && scatter.value() > 0.0;
   });
 }
@@ -236,16 +245,18 @@ void ChangeMonitor::observe(ChangeStart& start, std::span<const double> y, bool 
   for (std::size_t a = 0; a < axes(); ++a) {
     find_effects(std::span(start.theta).subspan(a * columns(), columns()), a);
     const double without = against_fit ? error_[a] : y[a] - effects_.value;
-    start.observe(a, effects_, y[a], without, 1.0 + leverage_);
+    const double ratio = usual_error_[a] / scatter_[a].value();
+    start.observe(a, effects_, y[a], without, ratio * ratio * (1.0 + leverage_));
   }
   start.peak = std::max(start.peak, start.evidence);
 }
 
 // Slow drifts, which a model follows anyway, gain less of a sample; what constant errors do not
 // explain at all is no drift.
-bool ChangeMonitor::is_clear(const ChangeStart& start) {
-  return start.over_constant > kChange.enough || (start.over_constant > kChange.over_constant &&
-                                                  start.evidence > kChange.clear * start.samples);
+bool ChangeMonitor::is_clear(const ChangeStart& start) const {
+  return (start.over_constant > kChange.enough && has_likely_cause(start)) ||
+         (start.over_constant > kChange.over_constant &&
+          start.evidence > kChange.clear * start.samples);
 }
 
 const ChangeStart* ChangeMonitor::most_evident() const {
@@ -305,9 +316,8 @@ ChangeStart& ChangeMonitor::start_before(double since_s) {
 std::optional<std::size_t> ChangeMonitor::command_of(const Cause& cause) const {
   const auto found = std::ranges::find(gains_, cause.place, &CommandGain::input);
   const auto command = static_cast<std::size_t>(found - gains_.begin());
-  const bool follows = cause.kind == CauseKind::thruster &&
-                       std::abs(cause.size) <= kChange.most_gain && found != gains_.end() &&
-                       scales_[command];
+  const bool follows = cause.kind == CauseKind::thruster && is_thrust(cause.size) &&
+                       found != gains_.end() && scales_[command];
   return follows ? std::optional(command) : std::nullopt;
 }
 
@@ -337,6 +347,17 @@ std::optional<std::size_t> ChangeMonitor::clear_command(const ChangeStart& start
   const bool clear = command < commands_ && scales_[command] &&
                      lone->likelihood >= kChange.lone_share * start.likelihood;
   return clear ? std::optional(command) : std::nullopt;
+}
+
+// One cause that explains most of what all causes together explain, and that a vehicle may have: a
+// thruster may give nothing, but no vehicle is without drag, or ten times as heavy. A calm minute
+// with other errors than a manoeuvre has looks so.
+bool ChangeMonitor::has_likely_cause(const ChangeStart& start) const {
+  const auto lone = std::ranges::max_element(start.lone, {}, &LoneCause::likelihood);
+  const bool is_command = lone - start.lone.begin() < static_cast<std::ptrdiff_t>(commands_);
+  const double factor = 1.0 + lone->size;
+  return lone->likelihood >= kChange.main_share * start.likelihood && is_thrust(factor) &&
+         (is_command || factor * kChange.most_gain >= 1.0);
 }
 
 // gains_ leads from the commands' factors in service to those of the start; null: of before the
@@ -437,7 +458,7 @@ void ChangeMonitor::end_all_starts() {
 
 void ChangeMonitor::restart() {
   fit_.clear();
-  std::ranges::for_each(scatter_, &RobustScale::clear);
+  std::ranges::for_each(scatter_, &ErrorsByEffect::clear);
   std::ranges::fill(usual_effect_, CommandEffect{});
   end_all_starts();
   believed_s_ = row_s_;

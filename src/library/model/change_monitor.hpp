@@ -11,10 +11,10 @@
 #include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "learner/error_correlation.hpp"
-#include "learner/robust_scale.hpp"
 #include "learner/triangular_fit.hpp"
 #include "model/change_start.hpp"
 #include "model/command_gain.hpp"
+#include "model/errors_by_effect.hpp"
 
 namespace kelpie {
 
@@ -122,9 +122,10 @@ class ChangeMonitor {
   ChangeStart& start_before(double since_s);
   std::optional<std::size_t> command_of(const Cause& cause) const;
   void observe(ChangeStart& start, std::span<const double> y, bool against_fit);
+  bool has_likely_cause(const ChangeStart& start) const;
   std::optional<std::size_t> clear_command(const ChangeStart& start) const;
   void move_gains(const ChangeStart* start);
-  static bool is_clear(const ChangeStart& start);
+  bool is_clear(const ChangeStart& start) const;
   const ChangeStart* most_evident() const;
   ChangeStart& youngest_with(double evidence);
   Event believe(ChangeStart& start, double t);
@@ -143,7 +144,7 @@ class ChangeMonitor {
   std::vector<std::vector<Factor>> term_commands_;  ///< commands in each term
   std::vector<std::size_t> term_drag_;              ///< axis that each term damps, or none
   TriangularFit fit_;
-  std::vector<RobustScale> scatter_;
+  std::vector<ErrorsByEffect> scatter_;
   std::vector<ErrorCorrelation> correlation_;
   std::vector<ChangeStart> starts_;
   std::size_t changed_start_;  ///< number of the start believed; kMostStarts: none
@@ -160,6 +161,8 @@ class ChangeMonitor {
   double usual_ = 0.0;               ///< largest evidence of former starts [nats], fading
   std::vector<double> told_, step_;  ///< change of the coefficients in service; last step
   std::vector<double> all_phi_, phi_, weighted_y_, error_;  ///< of the row
+  std::vector<double> effect_;               ///< of the row on each axis: root sum of squares
+  std::vector<double> usual_error_;          ///< of such rows on each axis; infinite while unknown
   std::vector<bool> scales_;                 ///< per command: every term is a power of the command
   std::vector<CommandGain> gains_;           ///< last event
   double leverage_ = 0.0;                    ///< φᵀPφ of the row

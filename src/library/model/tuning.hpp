@@ -147,6 +147,8 @@ inline constexpr struct ModelTuning {
     double prior = 1.0;              ///< of a term without effect [samples]; by hand
     std::size_t least_errors = 64;   ///< before the usual error is known; by hand
     std::size_t scatter_every = 16;  ///< errors between two medians; by hand
+    std::size_t octave_errors = 32;  ///< of effects of one octave, before their errors are known
+    std::size_t octave_every = 8;    ///< such errors between two medians; by hand
     std::uint64_t error_every = 4;   ///< rows per error of the usual error: 200 s in its window
     double clip_errors = 3.0;        ///< usual errors, largest in the autocorrelation
     double start_every_s = 10.0;     ///< s between two starts; by hand
@@ -165,6 +167,7 @@ inline constexpr struct ModelTuning {
     double samples_per_term = 5.0;   ///< independent samples of a vehicle that is known; by hand
     double alike = 0.8;              ///< share of the largest evidence that tells as much; by hand
     double lone_share = 0.9;         ///< of the likelihood of all causes, of one that is enough
+    double main_share = 0.5;         ///< the same, of a cause without which no change is likely
     double least_gain = 0.05;        ///< of a command; 0 would leave no way back
     double most_gain = 3.0;          ///< of a command; by hand
     double gain_step = 0.01;         ///< between two gains tried; by hand
