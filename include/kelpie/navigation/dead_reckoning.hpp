@@ -53,7 +53,7 @@ std::string_view fault_name(VelocityFault fault);
 
 /// The way of the vehicle since the start of an outage, in the frame of heading() = 0.
 struct Drift {
-  std::array<double, 2> position_m{};     ///< forward and to the left at heading 0
+  std::array<double, 2> position_m{};     ///< along surge and sway at heading 0
   std::array<double, 4> covariance_m2{};  ///< of the position's error, row-major
 };
 
@@ -117,7 +117,8 @@ class DeadReckoning {
   void update(std::span<const double> x, double t, std::span<const double> covariance = {});
 
   /// Adds a measured heading [rad] with its standard deviation, with the sign of the yaw rate.
-  /// Without a measured heading, heading() starts at 0. Throws InputError with planar off, on
+  /// Without a measured heading, heading() starts at 0; the first heading is taken as it is, and
+  /// current and position turn with it. Throws InputError with planar off, on
   /// numbers that aren't finite, and on a deviation <= 0.
   void measured_heading(double heading, double deviation);
 

@@ -347,6 +347,29 @@ TEST(InC, OneThreadTeachesWhileAnotherPredicts) {
   EXPECT_EQ(kelpie_share(nullptr, &twice), KELPIE_BAD_INPUT);
 }
 
+// What a model allocates while it learns is not more after it is shared.
+TEST(InC, ASharedModelHasTheRoomOfItsOwn) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const Model alone = boat_model();
+  kelpie_shared* shared = nullptr;
+  ASSERT_EQ(kelpie_share(boat_model().release(), &shared), KELPIE_OK);
+  const std::unique_ptr<kelpie_shared, decltype(&kelpie_free_shared)> owned(shared,
+                                                                            kelpie_free_shared);
+  Boat boat;
+  std::size_t of_alone = 0;
+  std::size_t of_shared = 0;
+  for (int i = 0; i < kDamage + 600; ++i) {
+    const Boat::Row row = boat.next();
+    std::size_t before = testing::allocations;
+    kelpie_update(alone.get(), row.x.data(), 5, row.y.data(), 3, row.t, nullptr);
+    of_alone += testing::allocations - before;
+    before = testing::allocations;
+    kelpie_shared_update(shared, row.x.data(), 5, row.y.data(), 3, row.t, nullptr);
+    of_shared += testing::allocations - before;
+  }
+  EXPECT_LE(of_shared, of_alone);
+}
+
 TEST(InC, ALearnerRenewsABlock) {
   const DynamicsModel like = the_class();
   const std::vector<Snapshot> capacity{like.mechanisms(0).snapshot(),
@@ -407,6 +430,10 @@ TEST(InC, AuthorityIsThatOfTheClass) {
   EXPECT_NE(std::string(kelpie_authority_text(authority)).find("of nominal left"),
             std::string::npos);
   kelpie_authority_free(authority);
+  EXPECT_EQ(kelpie_authority_create(model.get(), thrusters.data(), least.data(), most.data(), 0,
+                                    &authority),
+            KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "ranges: have to name a thruster or more");
   const std::array wrong{"n1", "n3"};
   EXPECT_EQ(create(wrong.data()), KELPIE_BAD_INPUT);
   EXPECT_STREQ(kelpie_last_error(), "thrusters: 'n3' is no input");
