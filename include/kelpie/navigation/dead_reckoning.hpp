@@ -73,8 +73,9 @@ struct Drift {
 /// In an outage d fades and c stays. The next measurement is weighted by both covariances. No
 /// measurement moves a velocity by more than three of its standard deviations (deviation(), before
 /// the measurement), so that neither an outlier nor a long outage makes the estimate jump. After
-/// three measurements in succession beyond three standard deviations that agree with one another,
-/// the standard deviations grow to the error found, and the fourth measurement is blended in.
+/// three measurements of a velocity in succession beyond three standard deviations that agree with
+/// one another, its standard deviations grow to the error found, and the fourth measurement is
+/// blended in.
 ///
 /// Recognised without a message's own word (`checks`): values that repeat the last ones to the last
 /// bit are no new measurement, as of a sensor whose driver holds values. Exact zeros of all

@@ -98,7 +98,7 @@ struct DeadReckoning::State {
   double widening() const { return widening(hypotheses[believed].practice); }
   double widening(const Practice& practice) const {
     const double age_s = silent_s();
-    return age_s > 0.0 ? practice.velocity_widening(age_s) : 1.0;
+    return age_s > 0.0 ? std::max(practice.velocity_widening(age_s), kChoice.least_widening) : 1.0;
   }
 
   Measured measured_in(std::span<const double> x) const {
@@ -374,7 +374,7 @@ void DeadReckoning::measured_heading(double heading, double deviation) {
     const double now = filter.mean()(filter.heading());
     const double value = now + wrapped(heading - now);
     if (is_first) {
-      // Where north is nothing told before: no heading of 0 that a measurement could contradict.
+      // The heading of 0 at the start is a choice of axes, which no measurement contradicts.
       filter.take_heading(value, variance);
       practice.stop();
     } else {

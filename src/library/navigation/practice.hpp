@@ -11,8 +11,8 @@
 namespace kelpie {
 
 /// Simulated outages: a second filter runs without the velocities of the log (a gyro goes on) for a
-/// while; its error at the end sets the process noise so that nine in ten errors lie
-/// within the 90 % ellipse. One outage in four lasts three times as long, and a quarter of an
+/// while; its error at the end sets the process noise so that nine in ten errors lie within the
+/// 90 % ellipse. One outage in four lasts three times as long, and a quarter of an
 /// outage is scored, too: for each of the three ages, the ellipse is widened as the last 24 outages
 /// ask, as the bands of rollouts are (conformal_bound()). The way is that of the measured
 /// velocities, since teacher and pupil share the teacher's error.
@@ -22,8 +22,8 @@ class Practice {
   Practice(const VelocityFilter& filter, double length_s);
 
   /// Follows `teacher` after one sample. `heard`: all velocities of the log were measured in the
-  /// sample; only such samples begin and score an outage. `lost`: velocities are silent for
-  /// too long, or the log was cut; ends the outage without a score.
+  /// sample; only such samples begin and score an outage. `lost`: velocities are silent for too
+  /// long, or the log was cut; ends the outage without a score.
   void follow(const VelocityFilter& teacher, std::span<const double> x, double dt_s, bool heard,
               bool lost);
 

@@ -505,6 +505,20 @@ TEST(DeadReckoning, AVehicleAtRestIsNotFrozenForLongerThanStated) {
   }
 }
 
+// A simulator's vehicle at rest, of which practice is never wrong.
+TEST(DeadReckoning, PracticeWithoutAnErrorLeavesDeviations) {
+  DeadReckoning reckoning(linear_vehicle(), {.checks = false});
+  for (int k = 0; k < 4000; ++k) {
+    const double measured = k < 3600 || k > 3680 ? 0.0 : kNaN;
+    reckoning.update(std::array{measured, measured, 0.0, 0.0, 0.0, 0.0}, kStepS * k);
+  }
+  reckoning.update(std::array{kNaN, kNaN, 0.0, 0.0, 0.0, 0.0}, 1020.0);
+  EXPECT_GT(reckoning.deviation(0), 0.0);
+  reckoning.update(std::array{0.1, 0.0, 0.0, 0.0, 0.0, 0.0}, 1020.25);
+  EXPECT_GT(reckoning.velocity(0), 0.0);
+  EXPECT_LE(reckoning.step(), 3.0 + 1e-9);
+}
+
 // A velocity log at 1 Hz, whose driver repeats the value at 4 Hz, and a gyro in samples of its own.
 TEST(DeadReckoning, HeldValuesAreNoNewMeasurementAndNoFault) {
   Water water({0.0, 0.0}, 0.01, 8);
