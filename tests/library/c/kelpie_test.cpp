@@ -439,6 +439,32 @@ TEST(InC, AuthorityIsThatOfTheClass) {
   EXPECT_STREQ(kelpie_last_error(), "thrusters: 'n3' is no input");
 }
 
+// A roll rate is measured, has no target, and is no thruster.
+TEST(InC, AuthorityTakesNoOtherVelocityForAThruster) {
+  constexpr std::array kRolling{"u", "v", "r", "n1", "n2", "p"};
+  kelpie_model* made = nullptr;
+  ASSERT_EQ(kelpie_create(kRolling.data(), 6, kBoatTargets.data(), 3, "buffer = 60", &made),
+            KELPIE_OK);
+  const Model model(made, kelpie_free);
+  Boat boat;
+  for (int i = 0; i < kDamage; ++i) {
+    const auto [x, y, t] = boat.next();
+    const std::array row{x[0], x[1], x[2], x[3], x[4], 0.1 * std::sin(2.0 * t)};
+    ASSERT_EQ(kelpie_update(made, row.data(), 6, y.data(), 3, t, nullptr), KELPIE_OK);
+  }
+  const double least = -5.0;
+  const double most = 5.0;
+  const auto create = [&](const char* name) {
+    kelpie_authority* authority = nullptr;
+    const kelpie_status status = kelpie_authority_create(made, &name, &least, &most, 1, &authority);
+    kelpie_authority_free(authority);
+    return status;
+  };
+  EXPECT_EQ(create("n1"), KELPIE_OK) << kelpie_last_error();
+  EXPECT_EQ(create("p"), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "ranges: input 5 is no thruster");
+}
+
 TEST(InC, VelocitiesGoOnThroughAnOutage) {
   const Model model = made();
   kelpie_reckoning* reckoning = nullptr;
