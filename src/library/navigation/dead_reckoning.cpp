@@ -193,7 +193,7 @@ struct DeadReckoning::State {
     for (Hypothesis& one : hypotheses) {
       one.filter.start(sample, noise);
       if (has_heading) {
-        one.filter.take_heading(first_heading, first_heading_variance);
+        one.filter.take(one.filter.heading(), first_heading, first_heading_variance);
       }
     }
     started = true;
@@ -221,7 +221,7 @@ struct DeadReckoning::State {
     const Estimate before = estimate();
     for (auto& [one, practice] : hypotheses) {
       if (gyro_alone) {
-        one.take_yaw_rate(values(0), noise(0, 0));
+        one.take(2, values(0), noise(0, 0));
       } else if (measured.count > 0) {
         least_off =
             std::min(least_off, one.correct(measured.all(), values, noise, widening(practice)));
@@ -375,7 +375,7 @@ void DeadReckoning::measured_heading(double heading, double deviation) {
     const double value = now + wrapped(heading - now);
     if (is_first) {
       // The heading of 0 at the start is a choice of axes, which no measurement contradicts.
-      filter.take_heading(value, variance);
+      filter.take(filter.heading(), value, variance);
       practice.stop();
     } else {
       filter.correct(std::array<Index, 1>{filter.heading()},

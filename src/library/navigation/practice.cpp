@@ -24,6 +24,14 @@ double ninety_percent(Eigen::Index values) {
   return static_cast<double>(values) * std::pow(1.0 - share + kNormal * std::sqrt(share), 3.0);
 }
 
+bool is_doubtful(const VelocityFilter& filter) {
+  bool found = false;
+  for (Eigen::Index i = 0; i < filter.velocities(); ++i) {
+    found = found || filter.doubtful(i);
+  }
+  return found;
+}
+
 }  // namespace
 
 Practice::Practice(const VelocityFilter& filter, double length_s)
@@ -62,7 +70,7 @@ void Practice::follow(const VelocityFilter& teacher, std::span<const double> x, 
     running_ = false;
   } else if (running_) {
     go_on(teacher, x, dt_s, heard);
-  } else if (heard && !teacher.doubtful()) {
+  } else if (heard && !is_doubtful(teacher)) {
     begin(teacher, x);
   }
 }
@@ -95,7 +103,7 @@ void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, d
   take_rates(x);
   age_s_ += dt_s;
   if (pupil_.planar()) {
-    pupil_.take_yaw_rate(teacher.mean()(2), teacher.covariance()(2, 2));
+    pupil_.take(2, teacher.mean()(2), teacher.covariance()(2, 2));
   }
   if (!heard) {
     return;

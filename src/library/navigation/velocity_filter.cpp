@@ -155,11 +155,6 @@ int VelocityFilter::count_doubts(std::span<const Eigen::Index> which, const Vect
   return doubts;
 }
 
-bool VelocityFilter::doubtful() const {
-  return std::ranges::any_of(std::span(doubts_).first(static_cast<std::size_t>(velocities_)),
-                             [](int doubts) { return doubts > 0; });
-}
-
 // The errors of two outliers in succession are alike: the vehicle is elsewhere.
 bool VelocityFilter::agrees(std::span<const Eigen::Index> which, const Vector& missing) const {
   for (std::size_t i = 0; i < which.size(); ++i) {
@@ -232,19 +227,21 @@ void VelocityFilter::take_over(std::span<const Eigen::Index> which, const Vector
   }
 }
 
-void VelocityFilter::take_yaw_rate(double value, double variance) {
-  constexpr std::array<Eigen::Index, 1> kYaw{2};
-  take_over(kYaw, Vector::Constant(1, value), Matrix::Constant(1, 1, variance));
-}
-
-void VelocityFilter::take_heading(double value, double variance) {
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(value - mean_(heading())).toRotationMatrix();
+void VelocityFilter::turn_to(double heading_rad) {
+  const Eigen::Matrix2d turn =
+      Eigen::Rotation2Dd(heading_rad - mean_(heading())).toRotationMatrix();
   for (const Eigen::Index first : {current(), position()}) {
     mean_.segment<2>(first) = (turn * mean_.segment<2>(first)).eval();
     covariance_.middleRows<2>(first) = (turn * covariance_.middleRows<2>(first)).eval();
     covariance_.middleCols<2>(first) = (covariance_.middleCols<2>(first) * turn.transpose()).eval();
   }
-  take_over(std::array{heading()}, Vector::Constant(1, value), Matrix::Constant(1, 1, variance));
+}
+
+void VelocityFilter::take(Eigen::Index state, double value, double variance) {
+  if (planar_ && state == heading()) {
+    turn_to(value);
+  }
+  take_over(std::array{state}, Vector::Constant(1, value), Matrix::Constant(1, 1, variance));
 }
 
 void VelocityFilter::forget_position() {

@@ -41,22 +41,19 @@ class VelocityFilter {
   double correct(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise,
                  double widening = 1.0);
 
-  /// Sets the yaw rate measured in planar motion, without a correction of surge and sway: a
-  /// correction by the model's slopes made dead reckoning on a real log worse.
-  void take_yaw_rate(double value, double variance);
+  /// Sets a state (of s) as measured, without a correction of the others. Of the yaw rate of planar
+  /// motion, since a correction of surge and sway by the model's slopes made dead reckoning on a
+  /// real log worse; of the heading, with which current and position turn, as the velocities stay.
+  void take(Eigen::Index state, double value, double variance);
 
   /// Rates of the velocities that the equations of motion expect at these velocities (NaN: the
   /// estimate's), under the last commands.
   Vector expected_rates(std::span<const double> velocities);
 
-  /// Sets the heading and turns current and position with it, as the velocities stay.
-  void take_heading(double value, double variance);
-
   /// Whether the last measurement of a velocity was an outlier.
   bool doubtful(Eigen::Index velocity) const {
     return doubts_[static_cast<std::size_t>(velocity)] > 0;
   }
-  bool doubtful() const;  ///< Of any velocity.
 
   void forget_position();  ///< Position starts at 0 again.
 
@@ -82,6 +79,7 @@ class VelocityFilter {
   double lasting_s(Eigen::Index velocity) const;
   void add_noise(double step_s, double factor);
   void keep_in_range();
+  void turn_to(double heading_rad);
   void take_over(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
   int count_doubts(std::span<const Eigen::Index> which, const Vector& missing, bool is_far);
   bool agrees(std::span<const Eigen::Index> which, const Vector& missing) const;
