@@ -23,7 +23,8 @@ extern "C" {
  *
  * Threads: several threads may predict with one model at a time; an update needs the model alone,
  * and any other call during an update is KELPIE_BAD_INPUT. With a kelpie_shared one thread learns
- * while others predict. Only functions that free, names and counts are not guarded.
+ * while others predict. Not guarded are functions that free, share or create, names, counts
+ * and kelpie_ready().
  */
 
 /** How a call ended; the numbers equal the exit codes of the commands. */

@@ -70,5 +70,7 @@ def test_names_what_is_wrong(damaged):
         kelpie.Authority(damaged, {"x9": (-1.0, 1.0)})
     with pytest.raises(ValueError, match="no thruster"):
         kelpie.Authority(damaged, {"x0": (-1.0, 1.0)})
+    with pytest.raises(ValueError, match="ranges: have to name a thruster or more"):
+        kelpie.Authority(damaged, {})
     with pytest.raises(ValueError, match="wanted"):
         kelpie.Authority(damaged, RANGES).allocate([0.1])

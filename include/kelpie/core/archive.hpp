@@ -43,7 +43,7 @@ class Archive {
   void numbers(std::span<float> values);   ///< Finite.
   void any_number(double& value);          ///< May also be infinite or NaN.
   void flag(bool& value);                  ///< True or false.
-  void text(std::string& value);           ///< Of any length.
+  void text(std::string& value);           ///< Up to 1 MiB.
 
   /// A whole number, by default within half the range of a counter.
   template <std::integral T>

@@ -80,9 +80,11 @@ class Diagnosis {
 
   /// `states`: the inputs whose derivatives are the targets, in the order of the targets, along or
   /// about `body_axes` (0 to 5: u, v, w, p, q, r; else kUnknownAxis). All other inputs but those of
-  /// the attitude are thrusters. Requires a state or more.
+  /// the attitude and `others`, such as velocities without a target, are thrusters. Requires a
+  /// state or more.
   Diagnosis(std::size_t inputs, const std::vector<std::size_t>& states,
-            std::vector<std::size_t> body_axes, const Attitude& attitude = {});
+            std::vector<std::size_t> body_axes, const Attitude& attitude = {},
+            std::span<const std::size_t> others = {});
   Diagnosis(const Diagnosis& other);
   Diagnosis(Diagnosis&& other) noexcept;
   Diagnosis& operator=(const Diagnosis& other);
@@ -94,7 +96,7 @@ class Diagnosis {
                            const Attitude& attitude = {});
 
   /// Processes one sample. Requires as many inputs and targets as at construction. A sample that is
-  /// not finite is ignored; a clock set back begins a new block of rows.
+  /// not finite is ignored; a clock set back to before the block of rows begins a new one.
   void update(std::span<const double> x, std::span<const double> y, double t);
 
   /// The last kMostFindings changes, the oldest first.
@@ -103,7 +105,8 @@ class Diagnosis {
   static constexpr std::size_t kMostFindings = 64;  ///< of findings()
 
   /// Thrust of every thruster in the last minute over the thrust in the reference; 1: unchanged.
-  /// Empty before ready(). The interval of an idle thruster is infinite.
+  /// Empty before ready(). The interval of an idle thruster is infinite, and of every thruster after
+  /// the first 24 less the number of axes.
   const std::vector<Cause>& health() const;
 
   bool ready() const;  ///< Whether there are enough rows for a reference.
@@ -194,8 +197,8 @@ struct Allocation {
 /// both. Thrust is that at rest: inflow isn't in it.
 class Authority {
  public:
-  /// Throws InputError (diagnosis) before the diagnosis is ready, and (ranges) on an input that is
-  /// no thruster, a number that isn't finite, and a range without 0. Allocates.
+  /// Throws InputError (diagnosis) before the diagnosis is ready, and (ranges) on none, an input
+  /// that is no thruster, a number that isn't finite, and a range without 0. Allocates.
   Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>& ranges);
 
   const std::vector<ThrusterEffect>& thrusters() const { return thrusters_; }
@@ -216,7 +219,7 @@ class Authority {
   double held_current() const { return held_current_; }
 
   /// "th2 gives 60 % of its thrust: udot 0.80, rdot 0.50 of nominal left; holds a current of 0.30
-  /// m/s". Names in the order of the diagnosis.
+  /// from ahead", in the log's unit of surge. Names in the order of the diagnosis.
   std::string text(const DiagnosisNames& names) const;
 
  private:

@@ -53,7 +53,7 @@ std::string_view fault_name(VelocityFault fault);
 
 /// The way of the vehicle since the start of an outage, in the frame of heading() = 0.
 struct Drift {
-  std::array<double, 2> position_m{};     ///< forward and to the left at heading 0
+  std::array<double, 2> position_m{};     ///< along surge and sway at heading 0
   std::array<double, 4> covariance_m2{};  ///< of the position's error, row-major
 };
 
@@ -73,8 +73,9 @@ struct Drift {
 /// In an outage d fades and c stays. The next measurement is weighted by both covariances. No
 /// measurement moves a velocity by more than three of its standard deviations (deviation(), before
 /// the measurement), so that neither an outlier nor a long outage makes the estimate jump. After
-/// three measurements in succession beyond three standard deviations that agree with one another,
-/// the standard deviations grow to the error found, and the fourth measurement is blended in.
+/// three measurements of a velocity in succession beyond three standard deviations that agree with
+/// one another, its standard deviations grow to the error found, and the fourth measurement is
+/// blended in.
 ///
 /// Recognised without a message's own word (`checks`): values that repeat the last ones to the last
 /// bit are no new measurement, as of a sensor whose driver holds values. Exact zeros of all
@@ -117,7 +118,8 @@ class DeadReckoning {
   void update(std::span<const double> x, double t, std::span<const double> covariance = {});
 
   /// Adds a measured heading [rad] with its standard deviation, with the sign of the yaw rate.
-  /// Without a measured heading, heading() starts at 0. Throws InputError with planar off, on
+  /// Without a measured heading, heading() starts at 0; the first heading is taken as it is, and
+  /// current and position turn with it. Throws InputError with planar off, on
   /// numbers that aren't finite, and on a deviation <= 0.
   void measured_heading(double heading, double deviation);
 

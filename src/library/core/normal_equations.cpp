@@ -123,7 +123,7 @@ void NormalEquations::visit(Archive& archive) {
   archive.number(rows_);
   for (std::size_t k = 0; k < terms_; ++k) {
     archive.numbers(std::span(a_).subspan(k * (terms_ + 1), terms_ - k));
-    for (std::size_t i = k; i < terms_; ++i) {
+    for (std::size_t i = k; archive.loading() && i < terms_; ++i) {
       a_[i * terms_ + k] = a_[k * terms_ + i];
     }
   }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "kelpie/learner/settings.hpp"
 #include "learner/robust_scale.hpp"
 #include "learner/sample_collector.hpp"
@@ -46,8 +47,8 @@ class OutlierFilter {
   double factor_;
   RobustScale scale_{kOnline.paper.outlier_least,
                      kOnline.paper.outlier_every};  ///< s, of the errors one step ahead
-  std::vector<double> scratch_;
-  std::vector<std::size_t> flagged_;
+  RoomyVector<double> scratch_;
+  RoomyVector<std::size_t> flagged_;
 };
 
 }  // namespace kelpie

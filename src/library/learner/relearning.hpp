@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
 #include "learner/sample_collector.hpp"
 
@@ -35,7 +36,7 @@ class Relearning {
   void visit(Archive& archive);  ///< core/archive.hpp
 
  private:
-  std::vector<std::uint64_t> arrivals_;  ///< of this round, in reverse order
+  RoomyVector<std::uint64_t> arrivals_;  ///< of this round, in reverse order
   int rounds_ = 0;                       ///< further rounds
 };
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/roomy_vector.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/stored_past_model.hpp"
@@ -37,18 +38,18 @@ std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
   return axes;
 }
 
-// Every input that is neither a velocity nor of the attitude.
-std::vector<std::size_t> commands_among(std::span<const std::string> inputs,
-                                        std::span<const std::size_t> states,
-                                        const Attitude& attitude) {
-  std::vector<std::size_t> commands;
+// Inputs that are neither states nor of the attitude: the commands, or the other velocities.
+std::vector<std::size_t> other_inputs(std::span<const std::string> inputs,
+                                      std::span<const std::size_t> states, const Attitude& attitude,
+                                      bool velocities) {
+  std::vector<std::size_t> others;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (std::ranges::find(states, i) == states.end() && !velocity_axis(inputs[i]) &&
-        !attitude.contains(i)) {
-      commands.push_back(i);
+    if (std::ranges::find(states, i) == states.end() && !attitude.contains(i) &&
+        velocity_axis(inputs[i]).has_value() == velocities) {
+      others.push_back(i);
     }
   }
-  return commands;
+  return others;
 }
 
 // Whether the diagnosis stands by the thrust of a command as a cause of the change since `since_s`:
@@ -141,7 +142,7 @@ struct DynamicsModel::Parts {
   ModelSettings settings;
   UpdateState state;
   std::vector<GuardedAxis> axes;
-  std::vector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
+  RoomyVector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
   std::optional<ChangeMonitor> change;
   std::optional<SteadyPart> steady;
   std::optional<Diagnosis> diagnosis;
@@ -167,10 +168,11 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
     steady.emplace(motion, dimension, states, AttitudeMotion(attitude, input_names, states));
   }
   if (!states.empty() && Diagnosis::terms(dimension, states, attitude) <= kMostTerms) {
-    diagnosis.emplace(dimension, states, body_axes(input_names, states), attitude);
+    diagnosis.emplace(dimension, states, body_axes(input_names, states), attitude,
+                      other_inputs(input_names, states, attitude, true));
   }
   if (adapts(settings) && !states.empty() && terms.size() > 0) {
-    change.emplace(terms, states, commands_among(input_names, states, attitude));
+    change.emplace(terms, states, other_inputs(input_names, states, attitude, false));
   }
   order.reserve(settings.axes.size());
   axes.reserve(settings.axes.size());

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
 
 namespace kelpie {
@@ -41,7 +42,7 @@ class WarmUp {
  private:
   std::size_t width_;  ///< numbers per sample: x, y, t
   std::size_t most_;
-  std::vector<double> rows_;
+  RoomyVector<double> rows_;
 };
 
 }  // namespace kelpie

@@ -27,10 +27,12 @@ constexpr std::array kDegreeEndings =
     std::to_array<std::string_view>({"_deg", "_degrees", "_degree"});
 constexpr std::array kAngleEndings =
     std::to_array<std::string_view>({"_rad", "_radians", "_angle"});
-// Parts of names of messages whose fields are no angles of the vehicle.
-constexpr std::array kOtherMessages =
-    std::to_array<std::string_view>({"cmd", "command", "control", "setpoint", "desired", "target",
-                                     "rate", "vel", "twist", "input", "joy", "rc"});
+// Words within names of messages whose fields are no angles of the vehicle, and those that only
+// begin a word: an aircraft has no "rc", a level no "vel".
+constexpr std::array kOtherMessages = std::to_array<std::string_view>(
+    {"command", "control", "setpoint", "desired", "target", "twist"});
+constexpr std::array kOtherWords =
+    std::to_array<std::string_view>({"cmd", "rate", "vel", "input", "joy"});
 constexpr std::array<std::string_view, 4> kQuaternion{"x", "y", "z", "w"};
 constexpr std::array kQuaternionBefore = std::to_array<std::string_view>(
     {"q", "q_", "quat_", "quaternion_", "orientation_", "orientation.", "quaternion.", "quat."});
@@ -53,13 +55,25 @@ bool remove_ending(std::string& word, std::span<const std::string_view> endings)
   return false;
 }
 
+bool is_other_message(std::string message) {
+  if (std::ranges::any_of(kOtherMessages, [&](std::string_view word) {
+        return message.find(word) != std::string::npos;
+      })) {
+    return true;
+  }
+  std::ranges::replace(message, '_', '.');
+  return std::ranges::any_of(split_text(message, '.'), [](const std::string& part) {
+    return part == "rc" || std::ranges::any_of(kOtherWords, [&](std::string_view word) {
+             return part.starts_with(word);
+           });
+  });
+}
+
 void find_angle(std::string_view name, std::size_t input, bool degrees, Attitude& found) {
   const std::string text = lower_case(name);
   const std::size_t last = text.find_last_of('.');
   const std::string message = last == std::string::npos ? "" : text.substr(0, last);
-  if (std::ranges::any_of(kOtherMessages, [&](std::string_view word) {
-        return message.find(word) != std::string::npos;
-      })) {
+  if (is_other_message(message)) {
     return;
   }
   std::string word = text.substr(last + 1);

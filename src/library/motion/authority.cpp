@@ -2,7 +2,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -14,16 +13,10 @@
 #include "kelpie/motion/diagnosis.hpp"
 #include "motion/bounded_minimum.hpp"
 #include "motion/tuning.hpp"
+#include "motion/wording.hpp"
 
 namespace kelpie {
 namespace {
-
-std::string fixed_text(double value, int digits) {
-  std::array<char, 64> text{};
-  const auto [end, error] =
-      std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed, digits);
-  return {text.begin(), end};
-}
 
 Eigen::Map<const Eigen::VectorXd> column(const std::vector<double>& values) {
   return as_vector(values);
@@ -72,6 +65,7 @@ double AxisAuthority::left() const {
 }
 
 Authority::Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>& ranges) {
+  require(!ranges.empty(), "ranges", "have to name a thruster or more");
   require(diagnosis.knows_thrust(), "diagnosis",
           "knows too little of the vehicle so far: it takes some minutes of driving");
   for (const CommandRange& range : ranges) {
@@ -265,18 +259,18 @@ std::string Authority::text(const DiagnosisNames& names) const {
   std::vector<std::string> parts;
   for (const ThrusterEffect& one : thrusters_) {
     if (std::abs(one.share - 1.0) >= kDiagnosis.least_share) {
-      parts.push_back(names.inputs[one.range.input] + " gives " + fixed_text(100.0 * one.share, 0) +
+      parts.push_back(names.inputs[one.range.input] + " gives " + text_of(100.0 * one.share, 0) +
                       " % of its thrust");
     }
   }
   std::string text = parts.empty() ? "all thrusters give their thrust" : join_text(parts, ", ");
   parts.clear();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    parts.push_back(names.targets[i] + " " + fixed_text(axes_[i].left(), 2));
+    parts.push_back(names.targets[i] + " " + text_of(axes_[i].left(), 2));
   }
   text += ": " + join_text(parts, ", ") + " of nominal left";
   if (std::isfinite(held_current_)) {
-    text += "; holds a current of " + fixed_text(held_current_, 2) + " m/s from ahead";
+    text += "; holds a current of " + text_of(held_current_, 2) + " from ahead";
   }
   if (lost_ < axes_.size()) {
     text += "; NEARLY NO AUTHORITY left in " + names.targets[lost_];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/quantile.hpp"
@@ -19,8 +20,9 @@ static_assert(kWindows.size() <= static_cast<std::size_t>(kDiagnosis.block_rows)
 }  // namespace
 
 CoefficientMonitor::CoefficientMonitor(std::size_t inputs, std::span<const std::size_t> states,
-                                       std::vector<std::size_t> body_axes, const Attitude& attitude)
-    : terms_(MotionTerms::diagnosis(inputs, states, attitude)),
+                                       std::vector<std::size_t> body_axes, const Attitude& attitude,
+                                       std::span<const std::size_t> others)
+    : terms_(MotionTerms::diagnosis(inputs, states, attitude, others)),
       explanations_(terms_, std::move(body_axes)),
       fit_(terms_.size(), states.size()),
       comparison_(terms_.size(), states.size(), explanations_.columns()),
@@ -44,8 +46,8 @@ bool CoefficientMonitor::ready() const {
 }
 
 void CoefficientMonitor::insert(const NormalEquations& block, double start_s, double end_s) {
-  // Of a block without a gap.
-  rate_hz_ = std::max(rate_hz_, (block.rows() - 1.0) / (end_s - start_s));
+  // Of a block without a gap: a pause lowers the rate of one block alone.
+  rate_hz_ = std::max(kDiagnosis.rate_kept * rate_hz_, (block.rows() - 1.0) / (end_s - start_s));
   if (kept_ == kBlocks) {
     absorb_oldest();
   }
@@ -139,16 +141,20 @@ double CoefficientMonitor::usual_scatter() const {
   return std::max(1.0, usual_.back());
 }
 
-// Of the last minute, all thrusters at a time, whatever forces there are.
+// Of the last minute, all thrusters at a time, whatever forces there are; of thrusters beyond the
+// columns of an agreement nothing is known.
 void CoefficientMonitor::update_health() {
   const std::span<const double> usual =
       std::span<const double>(usual_).last(explanations_.list().size() + 1);
   const double scatter = std::max(1.0, *std::ranges::max_element(usual));
   const double spread = kNormal90 * std::sqrt(scatter);
   const Agreement agreement = comparison_.of(health_columns_);
+  const std::size_t told = health_columns_.size() - terms_.velocities().size();
   health_.clear();
   for (std::size_t i = 0; i < terms_.commands().size(); ++i) {
-    health_.push_back(explanations_.cause(i, agreement.size[i], spread * agreement.error[i]));
+    health_.push_back(i < told
+                          ? explanations_.cause(i, agreement.size[i], spread * agreement.error[i])
+                          : explanations_.cause(i, 0.0, std::numeric_limits<double>::infinity()));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
 #include "motion/comparison.hpp"
 
@@ -21,7 +22,8 @@ class CoefficientMonitor {
 
   /// Arguments as for Diagnosis.
   CoefficientMonitor(std::size_t inputs, std::span<const std::size_t> states,
-                     std::vector<std::size_t> body_axes, const Attitude& attitude);
+                     std::vector<std::size_t> body_axes, const Attitude& attitude,
+                     std::span<const std::size_t> others);
 
   const MotionTerms& terms() const { return terms_; }
   const Explanations& explanations() const { return explanations_; }
@@ -84,7 +86,7 @@ class CoefficientMonitor {
   std::vector<NormalEquations> blocks_;  // the oldest at first_
   std::vector<double> starts_;           // times of their first rows
   std::size_t first_ = 0, kept_ = 0;
-  double rate_hz_ = 0.0;       // the highest of a block's rows
+  double rate_hz_ = 0.0;       // the highest of a block's rows, fading
   std::size_t window_;         // next to be tested
   std::size_t alarm_ = 0;      // window with the largest excess, from 1; 0: no alarm
   double alarm_excess_ = 0.0;  // evidence of this window above its threshold
@@ -93,7 +95,7 @@ class CoefficientMonitor {
   std::vector<double> expected_thrust_, thrust_;  // of expect_thrust(); of the directions
   std::vector<double> directions_;
   std::vector<std::size_t> health_columns_;
-  std::vector<Cause> health_;
+  RoomyVector<Cause> health_;
 };
 
 }  // namespace kelpie

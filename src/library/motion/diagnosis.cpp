@@ -4,11 +4,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/eigen.hpp"
 #include "core/normal_equations.hpp"
 #include "core/quantile.hpp"
+#include "core/roomy_vector.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "motion/cause_ranking.hpp"
 #include "motion/coefficient_monitor.hpp"
@@ -67,7 +69,8 @@ Eigen::VectorXd terms_beside_rest(const MotionTerms& terms, std::span<const doub
 class Diagnosis::State {
  public:
   State(std::size_t inputs, const std::vector<std::size_t>& states,
-        std::vector<std::size_t> body_axes, const Attitude& attitude);
+        std::vector<std::size_t> body_axes, const Attitude& attitude,
+        std::span<const std::size_t> others);
 
   void update(std::span<const double> x, std::span<const double> y, double t);
   const std::vector<Finding>& findings() const { return findings_; }
@@ -108,7 +111,7 @@ class Diagnosis::State {
   bool outlier_before_ = false;
   std::vector<double> phi_, residual_, delta_, tangent_;
   std::vector<Agreement> alone_;  // of every explanation
-  std::vector<Finding> findings_;
+  RoomyVector<Finding> findings_;
   std::size_t found_ = 0;
   std::size_t inputs_;
   std::vector<std::size_t> body_axes_;
@@ -118,8 +121,9 @@ class Diagnosis::State {
 };
 
 Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& states,
-                        std::vector<std::size_t> body_axes, const Attitude& attitude)
-    : monitor_(inputs, states, body_axes, attitude),
+                        std::vector<std::size_t> body_axes, const Attitude& attitude,
+                        std::span<const std::size_t> others)
+    : monitor_(inputs, states, body_axes, attitude, others),
       standstill_(states),
       block_(monitor_.terms().size(), states.size()),
       after_(block_),
@@ -182,35 +186,43 @@ bool Diagnosis::State::is_outlier(std::span<const double> y) {
 
 // Rows of a sensor that has stopped say nothing of the vehicle.
 bool Diagnosis::State::moves(std::span<const double> x, double t) {
-  const bool before = standstill_.any();
   standstill_.update(x, t);
-  const bool now = standstill_.any();
-  if (now && !before) {
-    report_frozen(t);
-  }
-  return !now;
+  report_frozen(t);
+  return !standstill_.any();
 }
 
+// Each sensor once, when it stops; two that stop at once are one finding.
 void Diagnosis::State::report_frozen(double t) {
-  std::size_t which = 0;
-  while (!standstill_.frozen(which)) {
-    ++which;
+  double earliest = std::numeric_limits<double>::infinity();
+  Finding* finding = nullptr;
+  for (std::size_t i = 0; i < states().size(); ++i) {
+    if (!standstill_.stopped(i)) {
+      continue;
+    }
+    const double since = standstill_.since(i);
+    const double value = standstill_.value(i);
+    if (finding == nullptr || finding->count == finding->causes.size()) {
+      finding = looking_ ? &findings_.back() : &add_finding(since, t);
+      looking_ = false;
+      finding->state = FindingState::named;
+      finding->told_s = t;
+      finding->since_s = since;
+      finding->settled = true;
+      finding->count = 0;
+      finding->explained = 1.0;
+      finding->before.fill(1.0);
+    }
+    finding->since_s = std::min(finding->since_s, since);
+    finding->causes[finding->count++] = {CauseKind::frozen, standstill_.input(i), value, value,
+                                         value};
+    earliest = std::min(earliest, since);
   }
-  const double since = standstill_.since(which);
-  const double value = standstill_.value(which);
-  monitor_.drop_since(since);
-  Finding& finding = looking_ ? findings_.back() : add_finding(since, t);
-  finding.state = FindingState::named;
-  finding.told_s = t;
-  finding.since_s = since;
-  finding.settled = true;
-  finding.count = 1;
-  finding.explained = 1.0;
-  finding.causes[0] = {CauseKind::frozen, standstill_.input(which), value, value, value};
-  looking_ = false;
-  shares_.follow({});
-  block_.clear();
-  guard_ = kDiagnosis.guard_blocks;
+  if (finding != nullptr) {
+    monitor_.drop_since(earliest);
+    shares_.follow({});
+    block_.clear();
+    guard_ = kDiagnosis.guard_blocks;
+  }
 }
 
 void Diagnosis::State::close_block(double t) {
@@ -433,8 +445,9 @@ void Diagnosis::State::visit(Archive& archive) {
 }
 
 Diagnosis::Diagnosis(std::size_t inputs, const std::vector<std::size_t>& states,
-                     std::vector<std::size_t> body_axes, const Attitude& attitude)
-    : state_(std::make_unique<State>(inputs, states, std::move(body_axes), attitude)) {}
+                     std::vector<std::size_t> body_axes, const Attitude& attitude,
+                     std::span<const std::size_t> others)
+    : state_(std::make_unique<State>(inputs, states, std::move(body_axes), attitude, others)) {}
 
 Diagnosis::Diagnosis(const Diagnosis& other) : state_(std::make_unique<State>(*other.state_)) {}
 Diagnosis::Diagnosis(Diagnosis&&) noexcept = default;

@@ -110,13 +110,16 @@ std::size_t Explanations::column(CauseKind kind, std::size_t place, std::size_t 
 
 std::vector<std::size_t> Explanations::health_columns() const {
   std::vector<std::size_t> found;
-  for (const CauseKind kind : {CauseKind::thruster, CauseKind::force}) {
-    for (std::size_t c = 0; c < columns_.size() && found.size() < kMostColumns; ++c) {
-      if (columns_[c].kind == kind) {
-        found.push_back(c);
-      }
+  std::vector<std::size_t> forces;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (columns_[c].kind == CauseKind::thruster) {
+      found.push_back(c);
+    } else if (columns_[c].kind == CauseKind::force) {
+      forces.push_back(c);
     }
   }
+  found.resize(std::min(found.size(), kMostColumns - forces.size()));
+  found.insert(found.end(), forces.begin(), forces.end());
   return found;
 }
 
@@ -159,8 +162,8 @@ void Explanations::inertial(const MotionTerms& terms, std::size_t axis,
                                          std::tuple{(along + 2) % 3, (along + 1) % 3, -1.0}}) {
     const std::size_t rate = state_of(3 + turn);
     const std::size_t velocity = state_of(move);
-    const std::size_t k =
-        terms.find({Form::product, std::min(rate, velocity), std::max(rate, velocity)});
+    const std::size_t k = std::min(terms.find({Form::product, rate, velocity}),
+                                   terms.find({Form::product, velocity, rate}));
     if (k < terms.size()) {
       direction[k] += sign;
     }

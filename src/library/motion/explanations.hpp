@@ -51,7 +51,8 @@ class Explanations {
   std::span<const Explanation> list() const { return list_; }
   std::size_t columns() const { return columns_.size(); }  ///< of all explanations together
 
-  /// The columns of all thrusters in their order, then of a force on each axis.
+  /// The columns of thrusters in their order, as many as there is room for in an Agreement, then of
+  /// a force on each axis.
   std::vector<std::size_t> health_columns() const;
 
   /// The directions D_c in the order of the columns, at the coefficients `theta` (terms × axes); of

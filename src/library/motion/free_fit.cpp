@@ -32,6 +32,7 @@ Eigen::VectorXd huber_weights(const Eigen::MatrixXd& residuals) {
 
 // Lags that count, as many as Andrews' rule for the Parzen kernel wants.
 Eigen::Index lags_of(const Eigen::MatrixXd& residuals) {
+  const auto axes = static_cast<double>(residuals.cols());
   double curvature = 0.0;
   for (Eigen::Index axis = 0; axis < residuals.cols(); ++axis) {
     const Eigen::VectorXd e = residuals.col(axis);
@@ -39,7 +40,7 @@ Eigen::Index lags_of(const Eigen::MatrixXd& residuals) {
     const double rho = std::clamp(e.tail(n - 1).dot(e.head(n - 1)) /
                                       std::max(e.squaredNorm(), std::numeric_limits<double>::min()),
                                   -kIdentification.most_rho, kIdentification.most_rho);
-    curvature += 4.0 * rho * rho / std::pow(1.0 - rho, 4.0) / 3.0;
+    curvature += 4.0 * rho * rho / std::pow(1.0 - rho, 4.0) / axes;
   }
   const auto n = static_cast<double>(residuals.rows());
   const auto lags = static_cast<Eigen::Index>(std::ceil(2.6614 * std::pow(curvature * n, 0.2)));

@@ -95,7 +95,8 @@ GlideParameters moved_by(GlideParameters parameters, std::span<const std::size_t
 // Less than squares far out, as the weights of the fit.
 double robust_squares(const Eigen::VectorXd& values, double usual) {
   const Eigen::ArrayXd sizes = values.array().abs() / usual;
-  return (sizes < 2.5).select(sizes.square(), 5.0 * sizes - 6.25).sum();
+  const double limit = kIdentification.huber_sigmas;
+  return (sizes < limit).select(sizes.square(), 2.0 * limit * sizes - limit * limit).sum();
 }
 
 }  // namespace

@@ -279,7 +279,7 @@ std::size_t MotionTerms::without_inflow() const {
 }
 
 MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size_t> velocities,
-                                   const Attitude& attitude) {
+                                   const Attitude& attitude, std::span<const std::size_t> others) {
   MotionTerms terms(inputs, velocities, attitude);
   terms.add(TermForm::one);
   for (const TermForm form :
@@ -297,6 +297,9 @@ MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size
     }
   }
   terms.add_each(terms.commands_, {TermForm::linear, TermForm::ahead, TermForm::astern});
+  std::erase_if(terms.commands_, [&](std::size_t input) {
+    return std::ranges::find(others, input) != others.end();
+  });
   terms.add_restoring(attitude);
   return terms;
 }

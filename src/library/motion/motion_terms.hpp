@@ -92,8 +92,10 @@ class MotionTerms {
   /// Number of terms, the first ones, before the products of a command and a velocity.
   std::size_t without_inflow() const;
   /// For diagnosis: 1, v, |v|, v|v|, v², v w, v|w|, n, max(n, 0)², −min(n, 0)², restoring terms.
+  /// Inputs of `others` have the terms of commands and are none.
   static MotionTerms diagnosis(std::size_t inputs, std::span<const std::size_t> velocities,
-                               const Attitude& attitude = {});
+                               const Attitude& attitude = {},
+                               std::span<const std::size_t> others = {});
   /// In the plane, the first inputs u, v, r: u, v, r, u|u|, v|v|, r|r|, vr, ur, r², uv, 1, then
   /// max(n, 0)² and −min(n, 0)² of every n.
   static MotionTerms planar(std::size_t thrusters);

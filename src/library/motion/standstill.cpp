@@ -14,7 +14,8 @@ Standstill::Standstill(std::vector<std::size_t> watched)
       since_(watched_.size()),
       run_(watched_.size()),
       longest_(watched_.size()),
-      frozen_(watched_.size()) {}
+      frozen_(watched_.size()),
+      stopped_(watched_.size()) {}
 
 void Standstill::update(std::span<const double> x, double t) {
   for (std::size_t i = 0; i < watched_.size(); ++i) {
@@ -35,6 +36,7 @@ void Standstill::update(std::span<const double> x, double t) {
     const bool long_enough =
         run_[i] >= std::max(kDiagnosis.frozen_rows, kDiagnosis.frozen_factor * longest_[i]) &&
         t - since_[i] >= kDiagnosis.frozen_s && others_move(i);
+    stopped_[i] = frozen_[i] == 0 && long_enough ? 1 : 0;
     frozen_[i] = frozen_[i] != 0 || long_enough ? 1 : 0;
   }
 }

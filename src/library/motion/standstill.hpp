@@ -18,6 +18,7 @@ class Standstill {
   void update(std::span<const double> x, double t);  ///< Processes one sample. Allocates nothing.
 
   bool frozen(std::size_t i) const { return frozen_[i] != 0; }    ///< State of watched input i.
+  bool stopped(std::size_t i) const { return stopped_[i] != 0; }  ///< Frozen since this update.
   bool any() const;                                               ///< Whether an input is frozen.
   double since(std::size_t i) const { return since_[i]; }         ///< Time of the first repeat.
   double value(std::size_t i) const { return last_[i]; }          ///< The reading.
@@ -32,6 +33,7 @@ class Standstill {
   std::vector<double> last_, since_;
   std::vector<std::size_t> run_, longest_;
   std::vector<char> frozen_;
+  std::vector<char> stopped_;  // follows from an update
 };
 
 }  // namespace kelpie

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
 #include "motion/coefficient_monitor.hpp"
 
@@ -50,7 +51,7 @@ class ThrustShares {
 
   std::vector<Cause> present_;
   std::vector<Cause> settled_;   // before the change under inspection
-  std::vector<double> nominal_;  // before thrust first changed; empty: it has not
+  RoomyVector<double> nominal_;  // before thrust first changed; empty: it has not
   std::size_t most_;             // number of coefficients
 };
 

@@ -19,6 +19,7 @@ inline constexpr struct DiagnosisTuning {
   double reference_rows = 960.0;  ///< [rows] or this number of rows,
   double rows_per_term = 10.0;    ///< [rows] and at least so many: by hand
   double memory_s = 3600.0;       ///< [s] of the reference
+  double rate_kept = 0.99;        ///< of the greatest rate, per block: by hand
 
   // Detection.
   std::array<std::size_t, 6> windows{2, 4, 8, 12, 18, 24};  ///< [blocks]
@@ -67,7 +68,7 @@ inline constexpr struct AuthorityTuning {
   double reached = 2e-3;         ///< of the nominal range: a wanted acceleration counts as reached
   double near_singular = 0.1;    ///< of the nominal least singular value
   double dead = 0.03;            ///< share of thrust, below which a thruster gets no command
-  double fastest_current = 5.0;  ///< m/s, end of the search
+  double fastest_current = 5.0;  ///< [unit of the log's velocities] end of the search
   int bisections = 40;           ///< to rounding of a millionth of a millionth
 } kAuthority;
 

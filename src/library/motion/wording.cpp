@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+
+#include "motion/wording.hpp"
 
 namespace kelpie {
 namespace {
@@ -13,13 +14,6 @@ constexpr std::array<std::string_view, kCauseKinds> kKinds{
     "thruster", "drag", "load", "force", "sensor_scale", "sensor_bias", "frozen"};
 constexpr std::array<std::string_view, kFindingStates> kStates{"looking", "named", "ambiguous",
                                                                "none"};
-
-// As std::to_chars; digits behind the point, or in all for `general`.
-std::string text_of(double value, int digits, std::chars_format form = std::chars_format::fixed) {
-  std::array<char, 400> text{};  // the greatest number has 309 digits before the point
-  const auto [end, error] = std::to_chars(text.begin(), text.end(), value, form, digits);
-  return {text.begin(), end};
-}
 
 // As many digits as it takes to tell the ends of the interval apart.
 int digits_of(const Cause& cause) {
@@ -69,6 +63,12 @@ std::string drive_for(const Cause& cause, const DiagnosisNames& names) {
 }
 
 }  // namespace
+
+std::string text_of(double value, int digits, std::chars_format form) {
+  std::array<char, 400> text{};  // the greatest number has 309 digits before the point
+  const auto [end, error] = std::to_chars(text.begin(), text.end(), value, form, digits);
+  return {text.begin(), end};
+}
 
 std::string_view kind_name(CauseKind kind) {
   return kKinds[static_cast<std::size_t>(kind)];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/angle.hpp"
@@ -68,6 +69,9 @@ struct DeadReckoning::State {
   double step = 0.0;
   Velocities first{};    ///< before the start: the last value of each velocity
   Velocities first_s{};  ///< and its time
+  bool has_heading = false;
+  double first_heading = 0.0;  ///< before the start: the last measured heading
+  double first_heading_variance = 0.0;
 
   State(const OpenLoop& model, const DeadReckoningSettings& given)
       : settings(given), sample(model.seen.size()) {
@@ -91,9 +95,10 @@ struct DeadReckoning::State {
   double deviation(Index i) const {
     return widening() * std::sqrt(std::max(filter().covariance()(i, i), 0.0));
   }
-  double widening() const {
+  double widening() const { return widening(hypotheses[believed].practice); }
+  double widening(const Practice& practice) const {
     const double age_s = silent_s();
-    return age_s > 0.0 ? hypotheses[believed].practice.velocity_widening(age_s) : 1.0;
+    return age_s > 0.0 ? std::max(practice.velocity_widening(age_s), kChoice.least_widening) : 1.0;
   }
 
   Measured measured_in(std::span<const double> x) const {
@@ -175,10 +180,21 @@ struct DeadReckoning::State {
            std::ranges::all_of(sample, [](double value) { return std::isfinite(value); });
   }
 
-  void start(double t, std::span<const double> covariance) {
-    const VelocityFilter::Matrix noise = noise_of(measured_in(sample), covariance);
+  // `told`: the velocities of the last sample, of which alone there is a covariance.
+  void start(double t, const Measured& told, std::span<const double> covariance) {
+    VelocityFilter::Matrix noise = noise_of(measured_in(sample), {});
+    const std::span<const Index> which = told.all();
+    const VelocityFilter::Matrix given = noise_of(told, covariance);
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      for (std::size_t k = 0; k < which.size(); ++k) {
+        noise(which[i], which[k]) = given(static_cast<Index>(i), static_cast<Index>(k));
+      }
+    }
     for (Hypothesis& one : hypotheses) {
       one.filter.start(sample, noise);
+      if (has_heading) {
+        one.filter.take(one.filter.heading(), first_heading, first_heading_variance);
+      }
     }
     started = true;
     time_s = heard_s = t;
@@ -205,9 +221,10 @@ struct DeadReckoning::State {
     const Estimate before = estimate();
     for (auto& [one, practice] : hypotheses) {
       if (gyro_alone) {
-        one.take_yaw_rate(values(0), noise(0, 0));
+        one.take(2, values(0), noise(0, 0));
       } else if (measured.count > 0) {
-        least_off = std::min(least_off, one.correct(measured.all(), values, noise));
+        least_off =
+            std::min(least_off, one.correct(measured.all(), values, noise, widening(practice)));
       }
     }
     // Nobody's model joins the samples; where that is often so, it is the model.
@@ -221,16 +238,16 @@ struct DeadReckoning::State {
       }
     }
     note_doubts(measured);
+    note_step(before);
     if (heard) {
       heard_s = time_s;
       believe();
     }
-    note_step(before);
   }
 
   void note_doubts(const Measured& measured) {
     for (const Index i : measured.all()) {
-      if (is_of_log(i) && filter().doubtful()) {
+      if (is_of_log(i) && filter().doubtful(i)) {
         faults[static_cast<std::size_t>(i)] = VelocityFault::implausible;
       }
     }
@@ -306,8 +323,7 @@ DeadReckoning::DeadReckoning(const DeadReckoning& other)
     : state_(std::make_unique<State>(*other.state_)) {}
 
 DeadReckoning& DeadReckoning::operator=(const DeadReckoning& other) {
-  *state_ = *other.state_;
-  return *this;
+  return *this = DeadReckoning(other);
 }
 
 void DeadReckoning::update(std::span<const double> x, double t,
@@ -328,8 +344,8 @@ void DeadReckoning::update(std::span<const double> x, double t,
   if (s.started) {
     const Measured measured = s.measured_in(s.sample);
     s.update(t, measured, s.noise_of(measured, covariance));
-  } else if (s.gather(t)) {
-    s.start(t, covariance);
+  } else if (const Measured told = s.measured_in(s.sample); s.gather(t)) {
+    s.start(t, told, covariance);
   }
 }
 
@@ -347,13 +363,25 @@ void DeadReckoning::measured_heading(double heading, double deviation) {
   require(state_->settings.planar, "heading", "is known of planar motion only");
   require(std::isfinite(heading), "heading", "has to be finite");
   require(deviation > 0.0 && std::isfinite(deviation), "deviation", "has to be > 0 rad");
-  VelocityFilter::Matrix noise(1, 1);
-  noise(0, 0) = deviation * deviation;
+  const double variance = deviation * deviation;
+  const bool is_first = !std::exchange(state_->has_heading, true);
+  if (!state_->started) {
+    state_->first_heading = heading;
+    state_->first_heading_variance = variance;
+    return;
+  }
   for (auto& [filter, practice] : state_->hypotheses) {
     const double now = filter.mean()(filter.heading());
-    VelocityFilter::Vector value(1);
-    value(0) = now + wrapped(heading - now);
-    filter.correct(std::array<Index, 1>{filter.heading()}, value, noise);
+    const double value = now + wrapped(heading - now);
+    if (is_first) {
+      // The heading of 0 at the start is a choice of axes, which no measurement contradicts.
+      filter.take(filter.heading(), value, variance);
+      practice.stop();
+    } else {
+      filter.correct(std::array<Index, 1>{filter.heading()},
+                     VelocityFilter::Vector::Constant(1, value),
+                     VelocityFilter::Matrix::Constant(1, 1, variance));
+    }
   }
 }
 

@@ -24,15 +24,32 @@ double ninety_percent(Eigen::Index values) {
   return static_cast<double>(values) * std::pow(1.0 - share + kNormal * std::sqrt(share), 3.0);
 }
 
+bool is_doubtful(const VelocityFilter& filter) {
+  bool found = false;
+  for (Eigen::Index i = 0; i < filter.velocities(); ++i) {
+    found = found || filter.doubtful(i);
+  }
+  return found;
+}
+
 }  // namespace
 
 Practice::Practice(const VelocityFilter& filter, double length_s)
     : pupil_(filter),
+      scored_(filter.velocities()),
       length_s_(length_s),
       as_heard_(filter.model().seen.size()),
       sizes_{RecentValues(kPractice.outages), RecentValues(kPractice.outages),
              RecentValues(kPractice.outages)},
-      speeds_(sizes_) {}
+      speeds_(sizes_) {
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < filter.velocities(); ++i) {
+    if (filter.planar() ? i < 2 : filter.is_of_log(i)) {
+      scored_(count++) = i;
+    }
+  }
+  scored_.conservativeResize(count);
+}
 
 double Practice::age_to_score(std::size_t i) const {
   return length_s_ * std::array{kPractice.early, 1.0, kPractice.longer}[i];
@@ -46,14 +63,14 @@ Eigen::Vector2d Practice::in_world(const VelocityFilter& teacher, std::span<cons
 
 void Practice::follow(const VelocityFilter& teacher, std::span<const double> x, double dt_s,
                       bool heard, bool lost) {
-  if (length_s_ == 0.0) {
+  if (length_s_ == 0.0 || scored_.size() == 0) {
     return;
   }
   if (lost || dt_s > kPractice.gap * length_s_) {
     running_ = false;
   } else if (running_) {
     go_on(teacher, x, dt_s, heard);
-  } else if (heard && !teacher.doubtful()) {
+  } else if (heard && !is_doubtful(teacher)) {
     begin(teacher, x);
   }
 }
@@ -77,15 +94,16 @@ void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, d
                      bool heard) {
   as_heard_.assign(x.begin(), x.end());
   for (Eigen::Index i = 0; i < pupil_.velocities(); ++i) {
-    if (!pupil_.planar() || i != 2) {
+    if (pupil_.is_of_log(i)) {
       as_heard_[pupil_.model().states[static_cast<std::size_t>(i)]] =
           std::numeric_limits<double>::quiet_NaN();
     }
   }
   pupil_.predict(as_heard_, dt_s, factor_);
+  take_rates(x);
   age_s_ += dt_s;
   if (pupil_.planar()) {
-    pupil_.take_yaw_rate(teacher.mean()(2), teacher.covariance()(2, 2));
+    pupil_.take(2, teacher.mean()(2), teacher.covariance()(2, 2));
   }
   if (!heard) {
     return;
@@ -102,6 +120,20 @@ void Practice::go_on(const VelocityFilter& teacher, std::span<const double> x, d
     judge(teacher, x);
     ++next_;
     running_ = next_ < (begun_ % kPractice.every == 0 ? kAges : kAges - 1);
+  }
+}
+
+// Of gyros, which an outage of the log leaves; the yaw rate of planar motion is the teacher's.
+void Practice::take_rates(std::span<const double> x) {
+  for (Eigen::Index i = 0; i < pupil_.velocities(); ++i) {
+    const auto state = static_cast<std::size_t>(i);
+    const double value = x[pupil_.model().states[state]];
+    if (!pupil_.is_of_log(i) && !(pupil_.planar() && i == 2) && std::isfinite(value)) {
+      const double noise = pupil_.model().noise[state];
+      pupil_.correct(std::array{i}, VelocityFilter::Vector::Constant(1, value),
+                     VelocityFilter::Matrix::Constant(
+                         1, 1, std::max(noise * noise, kNavigationTuning.choice.least_noise)));
+    }
   }
 }
 
@@ -129,16 +161,17 @@ double Practice::factor_at(const Sizes& sizes, double age_s) const {
 
 // The factor is followed as Robbins and Monro 1951 do.
 void Practice::judge(const VelocityFilter& teacher, std::span<const double> x) {
-  const Eigen::Index values = pupil_.planar() ? 2 : pupil_.velocities();
-  const Eigen::Index first = pupil_.planar() ? pupil_.position() : 0;
-  VelocityFilter::Vector off = pupil_.mean().segment(first, values);
-  VelocityFilter::Matrix expected = pupil_.covariance().block(first, first, values, values);
+  const Eigen::Index values = scored_.size();
+  VelocityFilter::Vector off(values);
+  VelocityFilter::Matrix expected(values, values);
   if (pupil_.planar()) {
-    off -= way_;
+    const Eigen::Index first = pupil_.position();
+    off = pupil_.mean().segment(first, values) - way_;
+    expected = pupil_.covariance().block(first, first, values, values);
     expected.diagonal().array() += way_variance_;
   } else {
-    off -= teacher.mean().head(values);
-    expected += teacher.covariance().topLeftCorner(values, values);
+    off = pupil_.mean()(scored_) - teacher.mean()(scored_);
+    expected = pupil_.covariance()(scored_, scored_) + teacher.covariance()(scored_, scored_);
   }
   const double square = off.dot(VelocityFilter::Vector(expected.ldlt().solve(off)));
   if (!std::isfinite(square)) {
@@ -155,13 +188,12 @@ void Practice::judge(const VelocityFilter& teacher, std::span<const double> x) {
   }
 }
 
-// Of surge and sway in planar motion; else of all.
 void Practice::judge_velocities(std::span<const double> x) {
-  const Eigen::Index values = pupil_.planar() ? 2 : pupil_.velocities();
-  VelocityFilter::Vector off = pupil_.mean().head(values);
-  VelocityFilter::Matrix expected = pupil_.covariance().topLeftCorner(values, values);
+  const Eigen::Index values = scored_.size();
+  VelocityFilter::Vector off = pupil_.mean()(scored_);
+  VelocityFilter::Matrix expected = pupil_.covariance()(scored_, scored_);
   for (Eigen::Index i = 0; i < values; ++i) {
-    const auto state = static_cast<std::size_t>(i);
+    const auto state = static_cast<std::size_t>(scored_(i));
     off(i) -= x[pupil_.model().states[state]];
     expected(i, i) += pupil_.model().noise[state] * pupil_.model().noise[state];
   }

@@ -10,9 +10,9 @@
 
 namespace kelpie {
 
-/// Simulated outages: a second filter runs without velocities (except the yaw rate in planar
-/// motion) for a while; its error at the end sets the process noise so that nine in ten errors lie
-/// within the 90 % ellipse. One outage in four lasts three times as long, and a quarter of an
+/// Simulated outages: a second filter runs without the velocities of the log (a gyro goes on) for a
+/// while; its error at the end sets the process noise so that nine in ten errors lie within the
+/// 90 % ellipse. One outage in four lasts three times as long, and a quarter of an
 /// outage is scored, too: for each of the three ages, the ellipse is widened as the last 24 outages
 /// ask, as the bands of rollouts are (conformal_bound()). The way is that of the measured
 /// velocities, since teacher and pupil share the teacher's error.
@@ -21,11 +21,13 @@ class Practice {
   /// Outages of `length_s` seconds; 0: none.
   Practice(const VelocityFilter& filter, double length_s);
 
-  /// Follows `teacher` after one sample. `heard`: all velocities (but the yaw rate) were measured
-  /// in the sample; only such samples begin and score an outage. `lost`: velocities are silent for
-  /// too long, or the log was cut; ends the outage without a score.
+  /// Follows `teacher` after one sample. `heard`: all velocities of the log were measured in the
+  /// sample; only such samples begin and score an outage. `lost`: velocities are silent for too
+  /// long, or the log was cut; ends the outage without a score.
   void follow(const VelocityFilter& teacher, std::span<const double> x, double dt_s, bool heard,
               bool lost);
+
+  void stop() { running_ = false; }  ///< Ends the outage without a score.
 
   /// Goes on with another model of the same inputs and velocities. Allocates.
   void use(const OpenLoop& model) { pupil_.use(model); }
@@ -47,16 +49,20 @@ class Practice {
   static constexpr std::size_t kAges = 3;
 
   using Sizes = std::array<RecentValues, kAges>;
+  using Places =
+      Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1, 0, VelocityFilter::kMostVelocities, 1>;
 
   double age_to_score(std::size_t i) const;
   double factor_at(const Sizes& sizes, double age_s) const;
   Eigen::Vector2d in_world(const VelocityFilter& teacher, std::span<const double> x) const;
   void begin(const VelocityFilter& teacher, std::span<const double> x);
+  void take_rates(std::span<const double> x);
   void go_on(const VelocityFilter& teacher, std::span<const double> x, double dt_s, bool heard);
   void judge(const VelocityFilter& teacher, std::span<const double> x);
   void judge_velocities(std::span<const double> x);
 
   VelocityFilter pupil_;
+  Places scored_;  ///< surge and sway in planar motion, else the velocities of the log
   double length_s_;
   bool running_ = false;
   double age_s_ = 0.0;

@@ -10,12 +10,13 @@ namespace kelpie {
 inline constexpr struct NavigationTuning {
   /// Choice between hypotheses of the current, and cuts in a log (navigation/dead_reckoning.hpp).
   struct Choice {
-    double least_noise = 1e-12;  ///< variance of a measurement, against singular matrices
-    int least_scored = 5;        ///< practised outages before a choice (docs/method/open_loop.md)
-    double better = 0.7;         ///< of the error of a simpler hypothesis (method/open_loop.md)
-    double cut = 100.0;          ///< squared deviations of a cut in the log; by hand
-    double apart_memory = 0.01;  ///< weight of the last sample in the share of cuts; by hand
-    double most_apart = 0.05;    ///< share of cuts, beyond which the model is at fault; by hand
+    double least_noise = 1e-12;    ///< variance of a measurement, against singular matrices
+    double least_widening = 0.01;  ///< of velocities, where practice had no error at all; by hand
+    int least_scored = 5;          ///< practised outages before a choice (docs/method/open_loop.md)
+    double better = 0.7;           ///< of the error of a simpler hypothesis (method/open_loop.md)
+    double cut = 100.0;            ///< squared deviations of a cut in the log; by hand
+    double apart_memory = 0.01;    ///< weight of the last sample in the share of cuts; by hand
+    double most_apart = 0.05;      ///< share of cuts, beyond which the model is at fault; by hand
   } choice;
 
   /// Practised outages (navigation/practice.hpp).

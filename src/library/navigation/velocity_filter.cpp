@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "model/seen_velocities.hpp"
 #include "navigation/tuning.hpp"
@@ -38,10 +39,11 @@ VelocityFilter::VelocityFilter(const OpenLoop& model, const DeadReckoningSetting
 }
 
 void VelocityFilter::start(std::span<const double> x, const Matrix& noise) {
-  to_.assign(x.begin(), x.end());
+  from_.assign(x.begin(), x.end());
+  to_ = from_;
   mean_.setZero();
   covariance_.setZero();
-  doubts_ = 0;
+  doubts_.fill(0);
   doubted_.setConstant(std::numeric_limits<double>::quiet_NaN());
   covariance_.topLeftCorner(velocities_, velocities_) = noise;
   for (Eigen::Index i = 0; i < velocities_; ++i) {
@@ -60,6 +62,9 @@ void VelocityFilter::join(const VelocityFilter& other) {
   doubts_ = other.doubts_;
   doubted_ = other.doubted_;
   to_ = other.to_;
+  for (const std::size_t state : model_.states) {
+    model_.seen[state] = other.model_.seen[state];
+  }
 }
 
 void VelocityFilter::use(const OpenLoop& model) {
@@ -85,7 +90,7 @@ void VelocityFilter::predict(std::span<const double> x, double dt_s, double fact
 }
 
 double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector& values,
-                               const Matrix& noise) {
+                               const Matrix& noise, double widening) {
   const auto count = static_cast<Eigen::Index>(which.size());
   Vector missing(count);
   Matrix cross(mean_.size(), count);
@@ -103,12 +108,13 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
     return 0.0;
   }
   const bool is_far = distance > kFilter.furthest;
-  doubts_ = !is_far ? 0 : agrees(which, missing) ? doubts_ + 1 : 1;
+  const int doubts = count_doubts(which, missing, is_far);
   // As if the measurement were so much worse that it is just believable.
   double doubt = std::max(1.0, distance / kFilter.furthest);
   Matrix gain = factored.solve(Matrix(cross.transpose())).transpose();
+  const double most_step = kFilter.most_step * std::min(widening, 1.0);
   for (Eigen::Index i = 0; i < velocities_; ++i) {
-    const double most = kFilter.most_step * std::sqrt(std::max(covariance_(i, i), 0.0));
+    const double most = most_step * std::sqrt(std::max(covariance_(i, i), 0.0));
     const double move = std::abs(gain.row(i).dot(missing));
     doubt = move > most * doubt ? move / most : doubt;
   }
@@ -126,11 +132,27 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
   }
   if (!is_far) {
     extend_range(which, values);
-  } else if (doubts_ >= kFilter.most_doubts) {
+  } else if (doubts >= kFilter.most_doubts) {
     extend_range(which, values);
     loosen(which, missing);
   }
   return distance;
+}
+
+// Of each state in turn: a gyro between two pings of a velocity log says nothing of the log.
+int VelocityFilter::count_doubts(std::span<const Eigen::Index> which, const Vector& missing,
+                                 bool is_far) {
+  int doubts = is_far ? 1 : 0;
+  if (is_far && agrees(which, missing)) {
+    doubts = std::numeric_limits<int>::max();
+    for (const Eigen::Index i : which) {
+      doubts = std::min(doubts, doubts_[static_cast<std::size_t>(i)] + 1);
+    }
+  }
+  for (const Eigen::Index i : which) {
+    doubts_[static_cast<std::size_t>(i)] = doubts;
+  }
+  return doubts;
 }
 
 // The errors of two outliers in succession are alike: the vehicle is elsewhere.
@@ -183,7 +205,11 @@ VelocityFilter::Vector VelocityFilter::expected_rates(std::span<const double> ve
     const double given = velocities[static_cast<std::size_t>(i)];
     s(i) = std::isfinite(given) ? given : s(i);
   }
-  return rate(s, 1.0).head(velocities_);
+  // Commands that are held hold those before, at the end of the step, too.
+  const CommandPath between = std::exchange(between_, CommandPath::linear);
+  const Vector rates = rate(s, 1.0);
+  between_ = between;
+  return rates.head(velocities_);
 }
 
 void VelocityFilter::take_over(std::span<const Eigen::Index> which, const Vector& values,
@@ -201,9 +227,21 @@ void VelocityFilter::take_over(std::span<const Eigen::Index> which, const Vector
   }
 }
 
-void VelocityFilter::take_yaw_rate(double value, double variance) {
-  constexpr std::array<Eigen::Index, 1> kYaw{2};
-  take_over(kYaw, Vector::Constant(1, value), Matrix::Constant(1, 1, variance));
+void VelocityFilter::turn_to(double heading_rad) {
+  const Eigen::Matrix2d turn =
+      Eigen::Rotation2Dd(heading_rad - mean_(heading())).toRotationMatrix();
+  for (const Eigen::Index first : {current(), position()}) {
+    mean_.segment<2>(first) = (turn * mean_.segment<2>(first)).eval();
+    covariance_.middleRows<2>(first) = (turn * covariance_.middleRows<2>(first)).eval();
+    covariance_.middleCols<2>(first) = (covariance_.middleCols<2>(first) * turn.transpose()).eval();
+  }
+}
+
+void VelocityFilter::take(Eigen::Index state, double value, double variance) {
+  if (planar_ && state == heading()) {
+    turn_to(value);
+  }
+  take_over(std::array{state}, Vector::Constant(1, value), Matrix::Constant(1, 1, variance));
 }
 
 void VelocityFilter::forget_position() {

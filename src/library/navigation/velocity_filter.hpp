@@ -36,19 +36,24 @@ class VelocityFilter {
 
   /// Corrects by measured values of the states `which` (of s) with their covariance. Returns the
   /// squared Mahalanobis distance per value. No velocity moves by more than three standard
-  /// deviations; the third outlier in succession that agrees with those before widens them.
-  double correct(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
+  /// deviations, nor by three of those times `widening`; the third outlier of a state in succession
+  /// that agrees with those before widens them.
+  double correct(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise,
+                 double widening = 1.0);
 
-  /// Sets the yaw rate measured in planar motion, without a correction of surge and sway: a
-  /// correction by the model's slopes made dead reckoning on a real log worse.
-  void take_yaw_rate(double value, double variance);
+  /// Sets a state (of s) as measured, without a correction of the others. Of the yaw rate of planar
+  /// motion, since a correction of surge and sway by the model's slopes made dead reckoning on a
+  /// real log worse; of the heading, with which current and position turn, as the velocities stay.
+  void take(Eigen::Index state, double value, double variance);
 
   /// Rates of the velocities that the equations of motion expect at these velocities (NaN: the
   /// estimate's), under the last commands.
   Vector expected_rates(std::span<const double> velocities);
 
-  /// Whether the last measurement was an outlier.
-  bool doubtful() const { return doubts_ > 0; }
+  /// Whether the last measurement of a velocity was an outlier.
+  bool doubtful(Eigen::Index velocity) const {
+    return doubts_[static_cast<std::size_t>(velocity)] > 0;
+  }
 
   void forget_position();  ///< Position starts at 0 again.
 
@@ -74,7 +79,9 @@ class VelocityFilter {
   double lasting_s(Eigen::Index velocity) const;
   void add_noise(double step_s, double factor);
   void keep_in_range();
+  void turn_to(double heading_rad);
   void take_over(std::span<const Eigen::Index> which, const Vector& values, const Matrix& noise);
+  int count_doubts(std::span<const Eigen::Index> which, const Vector& missing, bool is_far);
   bool agrees(std::span<const Eigen::Index> which, const Vector& missing) const;
   void loosen(std::span<const Eigen::Index> which, const Vector& missing);
   void extend_range(std::span<const Eigen::Index> which, const Vector& values);
@@ -89,12 +96,12 @@ class VelocityFilter {
   std::array<bool, kMostVelocities> of_log_{};
   Vector mean_;
   Matrix covariance_;
-  int doubts_ = 0;            ///< outliers in succession
-  Vector doubted_;            ///< errors of the last outlier, per state; NaN: none
-  bool yaw_given_ = false;    ///< the yaw rate is measured along the step, surge is not
-  std::vector<double> from_;  ///< the inputs before
-  std::vector<double> to_;    ///< the inputs after
-  std::vector<double> at_;    ///< scratch: inputs of one evaluation
+  std::array<int, kMost> doubts_{};  ///< outliers in succession, per state
+  Vector doubted_;                   ///< errors of the last outlier, per state; NaN: none
+  bool yaw_given_ = false;           ///< the yaw rate is measured along the step, surge is not
+  std::vector<double> from_;         ///< the inputs before
+  std::vector<double> to_;           ///< the inputs after
+  std::vector<double> at_;           ///< scratch: inputs of one evaluation
 };
 
 }  // namespace kelpie

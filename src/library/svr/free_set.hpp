@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "core/vector.hpp"
 #include "svr/kernel_matrix.hpp"
 
@@ -91,8 +92,8 @@ class FreeSet {
               std::span<const double> row);
 
   std::size_t capacity_;
-  std::vector<std::size_t> members_;
-  std::vector<Branch> branch_;
+  RoomyVector<std::size_t> members_;
+  RoomyVector<Branch> branch_;
   std::vector<std::ptrdiff_t> place_;  ///< of every sample among the members
   std::vector<double> factor_;         ///< L: place_of()
   std::vector<double> ones_;           ///< L⁻¹ 1

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
 #include "kelpie/svr/resources.hpp"
 
@@ -62,7 +63,7 @@ class KernelMatrix {
   std::size_t stride_;  ///< capacity rounded up, so that all rows are aligned alike
   std::vector<double> doubles_;
   std::vector<float> singles_;    ///< empty with Storage::float64; else doubles_ is empty
-  std::vector<double> diagonal_;  ///< separate, for contiguous access
+  RoomyVector<double> diagonal_;  ///< separate, for contiguous access
 };
 
 }  // namespace kelpie

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "svr/dual_problem.hpp"
 #include "svr/free_set.hpp"
 #include "svr/tuning.hpp"
@@ -107,7 +108,7 @@ class PathMove {
   std::vector<double> product_;  ///< K d_beta of the watched samples
 
   // The present path: samples with a changed weight, and their weights at its begin.
-  std::vector<std::size_t> moved_;
+  RoomyVector<std::size_t> moved_;
   std::vector<double> weight_before_;
   std::vector<char> has_moved_;
   std::vector<double> change_;

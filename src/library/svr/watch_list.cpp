@@ -100,7 +100,7 @@ void WatchList::visit(Archive& archive, const KernelMatrix& kernel) {
       }
     });
   };
-  samples(movers_, column_, movers_.capacity());
+  samples(movers_, column_, stride_);
   samples(watched_, place_, places_);
   for (std::size_t k = 0; archive.loading() && k < watched_.size(); ++k) {
     kernel.gather(watched_[k], movers_, {row(k), movers_.size()});

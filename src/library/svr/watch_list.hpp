@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/roomy_vector.hpp"
 #include "svr/kernel_matrix.hpp"
 
 namespace kelpie {
@@ -54,9 +55,9 @@ class WatchList {
 
   std::size_t places_;
   std::size_t stride_;
-  std::vector<std::size_t> watched_;
+  RoomyVector<std::size_t> watched_;
   std::vector<std::ptrdiff_t> place_;  ///< of every sample in `watched_`
-  std::vector<std::size_t> movers_;
+  RoomyVector<std::size_t> movers_;
   std::vector<std::ptrdiff_t> column_;  ///< of every sample in `movers_`
   std::vector<double> values_;          ///< K of watched against movers, row after row
   std::vector<double> column_values_;

@@ -347,6 +347,28 @@ TEST(InC, OneThreadTeachesWhileAnotherPredicts) {
   EXPECT_EQ(kelpie_share(nullptr, &twice), KELPIE_BAD_INPUT);
 }
 
+// An update that allocates nothing allocates nothing after the model is shared, either.
+TEST(InC, ASharedModelHasTheRoomOfItsOwn) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const Model alone = boat_model();
+  kelpie_shared* shared = nullptr;
+  ASSERT_EQ(kelpie_share(boat_model().release(), &shared), KELPIE_OK);
+  const std::unique_ptr<kelpie_shared, decltype(&kelpie_free_shared)> owned(shared,
+                                                                            kelpie_free_shared);
+  Boat boat;
+  std::size_t more = 0;
+  for (int i = 0; i < kDamage + 600; ++i) {
+    const Boat::Row row = boat.next();
+    std::size_t before = testing::allocations;
+    kelpie_update(alone.get(), row.x.data(), 5, row.y.data(), 3, row.t, nullptr);
+    const bool allocates = testing::allocations > before;
+    before = testing::allocations;
+    kelpie_shared_update(shared, row.x.data(), 5, row.y.data(), 3, row.t, nullptr);
+    more += allocates ? 0 : testing::allocations - before;
+  }
+  EXPECT_EQ(more, 0U);
+}
+
 TEST(InC, ALearnerRenewsABlock) {
   const DynamicsModel like = the_class();
   const std::vector<Snapshot> capacity{like.mechanisms(0).snapshot(),
@@ -407,9 +429,39 @@ TEST(InC, AuthorityIsThatOfTheClass) {
   EXPECT_NE(std::string(kelpie_authority_text(authority)).find("of nominal left"),
             std::string::npos);
   kelpie_authority_free(authority);
+  EXPECT_EQ(kelpie_authority_create(model.get(), thrusters.data(), least.data(), most.data(), 0,
+                                    &authority),
+            KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "ranges: have to name a thruster or more");
   const std::array wrong{"n1", "n3"};
   EXPECT_EQ(create(wrong.data()), KELPIE_BAD_INPUT);
   EXPECT_STREQ(kelpie_last_error(), "thrusters: 'n3' is no input");
+}
+
+// A roll rate is measured, has no target, and is no thruster.
+TEST(InC, AuthorityTakesNoOtherVelocityForAThruster) {
+  constexpr std::array kRolling{"u", "v", "r", "n1", "n2", "p"};
+  kelpie_model* made = nullptr;
+  ASSERT_EQ(kelpie_create(kRolling.data(), 6, kBoatTargets.data(), 3, "buffer = 60", &made),
+            KELPIE_OK);
+  const Model model(made, kelpie_free);
+  Boat boat;
+  for (int i = 0; i < kDamage; ++i) {
+    const auto [x, y, t] = boat.next();
+    const std::array row{x[0], x[1], x[2], x[3], x[4], 0.1 * std::sin(2.0 * t)};
+    ASSERT_EQ(kelpie_update(made, row.data(), 6, y.data(), 3, t, nullptr), KELPIE_OK);
+  }
+  const double least = -5.0;
+  const double most = 5.0;
+  const auto create = [&](const char* name) {
+    kelpie_authority* authority = nullptr;
+    const kelpie_status status = kelpie_authority_create(made, &name, &least, &most, 1, &authority);
+    kelpie_authority_free(authority);
+    return status;
+  };
+  EXPECT_EQ(create("n1"), KELPIE_OK) << kelpie_last_error();
+  EXPECT_EQ(create("p"), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "ranges: input 5 is no thruster");
 }
 
 TEST(InC, VelocitiesGoOnThroughAnOutage) {

@@ -29,6 +29,11 @@ TEST(Text, SplitKeepsEmptyParts) {
   EXPECT_EQ(split_text("a,", ','), (std::vector<std::string>{"a", ""}));
 }
 
+TEST(Text, JoinKeepsEmptyParts) {
+  const std::string text = ",x,";
+  EXPECT_EQ(join_text(split_text(text, ','), ","), text);
+}
+
 TEST(Text, SuggestsOnlyWhatIsNear) {
   const std::vector<std::string> names{"gamma", "epsilon", "buffer"};
   EXPECT_EQ(did_you_mean("gama", names), " (did you mean 'gamma'?)");

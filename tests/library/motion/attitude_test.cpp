@@ -42,6 +42,18 @@ TEST(Attitude, OtherNamesAreNone) {
   }
 }
 
+// Of a vehicle with such letters in its name.
+TEST(Attitude, LettersWithinAWordAreNoOtherMessage) {
+  for (const char* const name : {"orca4/attitude.roll", "aircraft.attitude.roll", "level.roll",
+                                 "accurate_imu.roll", "/enjoy/imu/roll"}) {
+    EXPECT_EQ(find_attitude(Names{name}).roll, 0U) << name;
+  }
+  for (const char* const name : {"rc.roll", "mavros/rc/in.roll", "cmd_vel.roll", "body_rates.roll",
+                                 "vehicle_attitude_setpoint.roll", "angular_velocity.roll"}) {
+    EXPECT_FALSE(find_attitude(Names{name}).roll) << name;
+  }
+}
+
 TEST(Attitude, DegreesAreToldByTheirSize) {
   const Attitude both = find_attitude(Names{"roll", "pitch"});
   EXPECT_EQ(unit_of_angles(both, std::vector{6.28, 1.57}), AngleUnit::radians);

@@ -174,6 +174,7 @@ TEST(Authority, OfTheWholeVehicleIsNominal) {
   }
   EXPECT_EQ(authority.lost_axis(), 3U);
   EXPECT_EQ(authority.text({kInputs, kTargets}).find("all thrusters give their thrust"), 0U);
+  EXPECT_TRUE(authority.text({kInputs, kTargets}).ends_with(" from ahead"));
   // 0.64 m/s² of thrust against 0.2 V + 0.8 V².
   EXPECT_NEAR(authority.held_current(), 0.78, 0.04);
   for (const ThrusterEffect& one : authority.thrusters()) {
@@ -320,6 +321,8 @@ TEST(Authority, RefusesRangesThatAreNone) {
               const Authority no(learned, {{3, 1100.0, 1900.0}});
             }),
             "ranges: have to contain 0, the command at rest, and more");
+  EXPECT_EQ(message_of<InputError>([&] { const Authority no(learned, {}); }),
+            "ranges: have to name a thruster or more");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -78,6 +79,99 @@ TEST(Diagnosis, NamesAFrozenSensorAndWhen) {
   EXPECT_EQ(finding.causes[0].kind, CauseKind::frozen);
   EXPECT_EQ(finding.causes[0].place, 1U);
   EXPECT_NEAR(finding.since_s, 600.0, 0.5);
+}
+
+// What a sensor shows from a row on is its last value.
+void freeze(const std::array<std::size_t, 2>& from, const std::array<std::size_t, 2>& which,
+            Diagnosis& diagnosis) {
+  Drive drive(1);
+  std::size_t row = 0;
+  Drive::Row last{};
+  drive.show(kBefore + kMinute, {}, [&](Drive::Row x, Drive::Accelerations y, double t) {
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      if (row >= kBefore + from[i]) {
+        x[which[i]] = last[which[i]];
+        y[which[i]] = 0.0;
+      }
+    }
+    ++row;
+    last = x;
+    diagnosis.update(x, y, t);
+  });
+}
+
+TEST(Diagnosis, NamesEverySensorThatFreezes) {
+  Diagnosis later = drive_diagnosis();
+  freeze({0, 80}, {1, 2}, later);
+  ASSERT_EQ(later.findings().size(), 2U);
+  EXPECT_EQ(later.findings()[0].causes[0].place, 1U);
+  EXPECT_EQ(later.findings()[1].causes[0].place, 2U);
+  EXPECT_NEAR(later.findings()[1].since_s, 620.0, 0.5);
+
+  Diagnosis together = drive_diagnosis();
+  freeze({0, 0}, {2, 0}, together);
+  ASSERT_EQ(together.findings().size(), 1U);
+  ASSERT_EQ(together.findings()[0].count, 2U);
+  EXPECT_EQ(together.findings()[0].causes[0].place, 0U);
+  EXPECT_EQ(together.findings()[0].causes[1].place, 2U);
+  EXPECT_EQ(together.findings()[0].causes[1].kind, CauseKind::frozen);
+}
+
+// A load resists as an observer at rest sees it, in whatever order the velocities come.
+TEST(Diagnosis, ALoadIsTheSameInEveryOrderOfTheVelocities) {
+  const Diagnosis usual = after({.inertia = 1.3}, 2);
+  Diagnosis turned(6, {1, 2, 0}, {0, 1, 5});
+  Drive drive(2);
+  const auto show = [&](const Drive::Row& x, const Drive::Accelerations& y, double t) {
+    turned.update(std::array{x[2], x[0], x[1], x[3], x[4], x[5]}, y, t);
+  };
+  drive.show(kBefore, {}, show);
+  drive.show(kMinute, {.inertia = 1.3}, show);
+  ASSERT_EQ(turned.findings().size(), 1U);
+  const Cause& cause = turned.findings()[0].causes[0];
+  EXPECT_EQ(cause.kind, CauseKind::load);
+  EXPECT_NEAR(cause.size, usual.findings()[0].causes[0].size, 1e-4);
+  EXPECT_NEAR(turned.findings()[0].evidence, usual.findings()[0].evidence,
+              1e-3 * usual.findings()[0].evidence);
+}
+
+// A roll rate without a target is measured and is no thruster.
+TEST(Diagnosis, OtherInputsAreNoThrusters) {
+  Diagnosis diagnosis(7, {0, 1, 2}, {0, 1, 5}, {}, std::array{std::size_t{6}});
+  Drive drive(3);
+  drive.show(kBefore, {}, [&](const Drive::Row& x, const Drive::Accelerations& y, double t) {
+    diagnosis.update(std::array{x[0], x[1], x[2], x[3], x[4], x[5], std::sin(t)}, y, t);
+  });
+  ASSERT_EQ(diagnosis.health().size(), 3U);
+  ASSERT_EQ(diagnosis.present().size(), 3U);
+  EXPECT_EQ(diagnosis.present().back().place, 5U);
+  EXPECT_THROW(Authority(diagnosis, {{6, -1.0, 1.0}}), InputError);
+}
+
+// Of more thrusters than there are sizes at once: nothing is known of the last.
+TEST(Diagnosis, TellsTheHealthOfManyThrusters) {
+  constexpr std::size_t kThrusters = 30;
+  Diagnosis diagnosis(1 + kThrusters, {0}, {0});
+  RandomStream random(1, "many");
+  std::array<double, 1 + kThrusters> x{};
+  for (int row = 0; row < 1800; ++row) {
+    double thrust = 0.05;  // a constant force, which health allows for
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      x[i] = random.uniform(-1.0, 1.0);
+      thrust += 0.1 * x[i] * std::abs(x[i]);
+    }
+    const double a = thrust - 0.5 * x[0];
+    diagnosis.update(x, std::array{a + 1e-3 * random.normal()}, 0.25 * row);
+    x[0] += 0.25 * a;
+  }
+  ASSERT_EQ(diagnosis.health().size(), kThrusters);
+  for (std::size_t i = 0; i < kThrusters; ++i) {
+    const Cause& cause = diagnosis.health()[i];
+    EXPECT_EQ(cause.place, 1 + i);
+    EXPECT_NEAR(cause.size, 1.0, 0.1);
+    EXPECT_EQ(std::isfinite(cause.upper), i < 23U) << i;
+    EXPECT_LT(cause.lower, cause.upper);
+  }
 }
 
 TEST(Diagnosis, NamesTwoCausesAtOnce) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
@@ -241,6 +242,106 @@ TEST(DeadReckoning, GoesOnWithoutAYawRateAndTakesInAHeading) {
   EXPECT_THROW(reckoning.measured_heading(0.0, 0.0), InputError);
 }
 
+TEST(DeadReckoning, TheFirstHeadingIsTakenAsItIsAndTurnsTheCurrentWithIt) {
+  Water water({0.15, -0.1}, 0.0, 1);
+  DeadReckoning reckoning(linear_vehicle(0.002));
+  DeadReckoning before_start = reckoning;
+  before_start.measured_heading(1.5, 0.02);
+  follow(reckoning, water, 600.0, false);
+  const double change = 1.2 - reckoning.heading();
+  const std::array<double, 2> c = reckoning.current();
+  reckoning.measured_heading(1.2, 0.02);
+  EXPECT_NEAR(std::remainder(reckoning.heading() - 1.2, 2.0 * std::acos(-1.0)), 0.0, 1e-9);
+  EXPECT_NEAR(reckoning.current()[0], std::cos(change) * c[0] - std::sin(change) * c[1], 1e-9);
+  EXPECT_NEAR(reckoning.current()[1], std::sin(change) * c[0] + std::cos(change) * c[1], 1e-9);
+  reckoning.measured_heading(1.3, 0.02);  // from now on as any measurement
+  EXPECT_GT(std::remainder(reckoning.heading(), 2.0 * std::acos(-1.0)), 1.21);
+  EXPECT_LT(std::remainder(reckoning.heading(), 2.0 * std::acos(-1.0)), 1.29);
+
+  Water again({0.0, 0.0}, 0.0, 1);
+  follow(before_start, again, kStepS, false);
+  EXPECT_TRUE(before_start.started());
+  EXPECT_EQ(before_start.heading(), 1.5);
+}
+
+TEST(DeadReckoning, BeginsWithSamplesWhoseCovarianceTellsOfTheirOwnVelocitiesAlone) {
+  DeadReckoning reckoning(linear_vehicle());
+  const std::array log{1e-4, 0.0, kNaN, 0.0, 1e-4, kNaN, kNaN, kNaN, kNaN};
+  const std::array gyro{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, 4e-4};
+  reckoning.update(std::array{0.1, 0.0, kNaN, 0.0, 0.0, 0.0}, 0.0, log);
+  reckoning.update(std::array{kNaN, kNaN, 0.1, 0.0, 0.0, 0.0}, 0.1, gyro);
+  ASSERT_TRUE(reckoning.started());
+  EXPECT_NEAR(reckoning.deviation(2), 0.02, 1e-9);
+  EXPECT_NEAR(reckoning.deviation(0), 0.001, 1e-9);  // the noise that the model knows
+  reckoning.update(std::array{0.1, 0.0, kNaN, 0.0, 0.0, 0.0}, 0.2, log);
+  EXPECT_NEAR(reckoning.velocity(0), 0.1, 0.01);
+}
+
+TEST(DeadReckoning, WhatWasMovedFromCanBeAssignedTo) {
+  Water water({0.0, 0.0}, 0.01, 9);
+  DeadReckoning reckoning(linear_vehicle());
+  follow(reckoning, water, 10.0, false);
+  const DeadReckoning moved = std::move(reckoning);
+  reckoning = moved;  // NOLINT(bugprone-use-after-move)
+  EXPECT_EQ(reckoning.velocity(0), moved.velocity(0));
+}
+
+// Outside the plane, a gyro of its own.
+DeadReckoningSettings with_gyro() {
+  return {.planar = false, .rates = {2}};
+}
+
+// A sample of the gyro and one of the log.
+void follow_apart(DeadReckoning& reckoning, Water& water, double seconds) {
+  for (int k = 0; k < static_cast<int>(seconds / kStepS); ++k) {
+    water.advance();
+    const std::array<double, 6> x = water.sample(false);
+    std::array<double, 6> log = x;
+    std::array<double, 6> gyro = x;
+    log[2] = gyro[0] = gyro[1] = kNaN;
+    reckoning.update(gyro, water.time_s() - 0.1);
+    reckoning.update(log, water.time_s());
+  }
+}
+
+TEST(DeadReckoning, AGyroBetweenTwoPingsDoesNotHideThatTheVehicleIsElsewhere) {
+  Water water({0.0, 0.0}, 0.001, 7);
+  DeadReckoningSettings settings = with_gyro();
+  settings.practice_s = 0.0;
+  DeadReckoning reckoning(linear_vehicle(0.001), settings);
+  follow_apart(reckoning, water, 60.0);
+  water.velocity[0] -= 0.5;
+  follow_apart(reckoning, water, 4.0 * kStepS);
+  EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.03);
+}
+
+// The yaw rate of which the model explains half is measured in an outage of the log, too.
+TEST(DeadReckoning, PractisesOutagesOfTheLogAloneOutsideThePlane) {
+  Water water({0.0, 0.0}, 0.005, 12);
+  OpenLoop loop = linear_vehicle(0.005);
+  loop.error[2] = 0.002;
+  loop.accelerations = [](std::span<const double> x, std::span<double> a) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      a[i] = -kDrag * x[i] + (i == 2 ? 0.5 : 1.0) * x[3 + i];
+    }
+  };
+  DeadReckoning reckoning(loop, with_gyro());
+  follow_apart(reckoning, water, 1500.0);
+  EXPECT_NE(reckoning.noise_factor(), 1.0);
+  EXPECT_LT(reckoning.noise_factor(), 5.0);
+}
+
+// As fast as never in learning: practice knows what the filter has seen since.
+TEST(DeadReckoning, PractisesAtSpeedsThatOnlyTheFilterHasSeen) {
+  Water water({0.0, 0.0}, 0.005, 13);
+  OpenLoop loop = linear_vehicle(0.005);
+  loop.seen[0] = {0.0, 0.05};
+  DeadReckoning reckoning(loop, {.current_m_s = 0.0});
+  follow(reckoning, water, 1500.0, false);
+  EXPECT_GT(reckoning.velocity(0), 0.1);
+  EXPECT_LT(reckoning.noise_factor(), 5.0);
+}
+
 TEST(DeadReckoning, BeginsWithAWholeSampleAndKeepsACommandThatIsMissing) {
   DeadReckoning reckoning(linear_vehicle());
   reckoning.update(std::array{0.1, kNaN, 0.0, 0.0, 0.0, 0.0}, 0.0);
@@ -361,9 +462,23 @@ TEST(DeadReckoning, NeverStepsBeyondThreeDeviationsHoweverWrong) {
   EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.02);
 }
 
+// A model that tells of errors far too large: practice narrows what is said of the velocities.
+TEST(DeadReckoning, StepsBackByWhatWasSaidAfterAnOutage) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Water water({0.0, 0.0}, 0.0, seed);
+    DeadReckoning reckoning(linear_vehicle(0.02));
+    follow(reckoning, water, 900.0, false);
+    follow(reckoning, water, 20.0, true);
+    water.velocity[0] += 0.6;  // a collision
+    for (int k = 0; k < 8; ++k) {
+      follow(reckoning, water, kStepS, false);
+      EXPECT_LE(reckoning.step(), 3.0 + 1e-9);
+    }
+  }
+}
+
 // A simulator's vehicle at rest, to the last bit: not measured for three seconds, then measured.
-TEST(DeadReckoning, AVehicleAtRestIsNotFrozenForLongerThanStated) {
-  DeadReckoning reckoning(linear_vehicle());
+void expect_rest(DeadReckoning reckoning) {
   double t = 0.0;
   const auto rest = [&](double seconds) {
     double silent_s = 0.0;
@@ -383,6 +498,26 @@ TEST(DeadReckoning, AVehicleAtRestIsNotFrozenForLongerThanStated) {
     reckoning.update(std::array{0.0, 0.0, 0.0, 0.1, 0.0, 0.0}, t);
   }
   EXPECT_EQ(reckoning.fault(0), VelocityFault::zero);
+}
+
+TEST(DeadReckoning, AVehicleAtRestIsNotFrozenForLongerThanStated) {
+  for (const CommandPath between : {CommandPath::linear, CommandPath::held}) {
+    expect_rest(DeadReckoning(linear_vehicle(), {.between = between}));
+  }
+}
+
+// A simulator's vehicle at rest, of which practice is never wrong.
+TEST(DeadReckoning, PracticeWithoutAnErrorLeavesDeviations) {
+  DeadReckoning reckoning(linear_vehicle(), {.checks = false});
+  for (int k = 0; k < 4000; ++k) {
+    const double measured = k < 3600 || k > 3680 ? 0.0 : kNaN;
+    reckoning.update(std::array{measured, measured, 0.0, 0.0, 0.0, 0.0}, kStepS * k);
+  }
+  reckoning.update(std::array{kNaN, kNaN, 0.0, 0.0, 0.0, 0.0}, 1020.0);
+  EXPECT_GT(reckoning.deviation(0), 0.0);
+  reckoning.update(std::array{0.1, 0.0, 0.0, 0.0, 0.0, 0.0}, 1020.25);
+  EXPECT_GT(reckoning.velocity(0), 0.0);
+  EXPECT_LE(reckoning.step(), 3.0 + 1e-9);
 }
 
 // A velocity log at 1 Hz, whose driver repeats the value at 4 Hz, and a gyro in samples of its own.
