@@ -82,6 +82,36 @@ TEST_F(Health, RefusesWhatIsNoDateNoLogAndNoColumn) {
   expect_nothing_written("health dive.csv --glider wing=p", "is no NAME=COLUMN");
 }
 
+TEST_F(Health, ChecksEveryLogAndNotTheFirstAlone) {
+  dive("a.csv", 1, 1.0);
+  dive("b.csv", 2, 1.0);
+  const std::string text = content("b.csv");
+  std::string stamps = text.substr(0, text.find('\n') + 1);
+  std::size_t row = 0;
+  for (std::size_t at = stamps.size(); at < text.size(); ++row) {
+    const std::size_t end = text.find('\n', at);
+    const std::size_t begin = text.find(',', at);  // behind the configuration
+    stamps += text.substr(at, begin - at + 1) + std::to_string(0.5 * static_cast<double>(row / 2)) +
+              text.substr(text.find(',', begin + 1), end + 1 - text.find(',', begin + 1));
+    at = end + 1;
+  }
+  write("b.csv", stamps);
+  expect_nothing_written("health a.csv b.csv --align none",
+                         "have the time stamp of the row before");
+  succeeded(run("health a.csv b.csv --align none --accept implausible --out out"));
+}
+
+TEST_F(Health, TwoLogsOfOneNameLoseNoGlides) {
+  for (const char* const folder : {"a", "b"}) {
+    std::filesystem::create_directory(folder_ / folder);
+    write(std::string(folder) + "/dive.csv", "time,p,b,d,w\n0,1,2,3,4\n1,1,2,3,4\n");
+  }
+  const std::string how = " --glider pitch=p,ballast=b,depth=d,sinking=w --glide-csv";
+  expect_nothing_written("health a/dive.csv b/dive.csv" + how, "to one file, dive_glide.csv");
+  const testing::Outcome two = run("health '{vehicle}/{mission}.csv' --out out" + how);
+  EXPECT_EQ(two.err.find("to one file"), std::string::npos) << two.err;
+}
+
 // A log that is too short for a factor says so in place of a number.
 TEST_F(Health, OneDiveIsATableWithoutAVerdict) {
   dive("dive.csv", 1, 1.0);
