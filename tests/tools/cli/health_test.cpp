@@ -91,12 +91,12 @@ TEST_F(Health, ChecksEveryLogAndNotTheFirstAlone) {
   const std::string text = content("b.csv");
   std::string stamps = text.substr(0, text.find('\n') + 1);
   std::size_t row = 0;
-  for (std::size_t at = stamps.size(); at < text.size(); ++row) {
-    const std::size_t end = text.find('\n', at);
-    const std::size_t begin = text.find(',', at);  // behind the configuration
-    stamps += text.substr(at, begin - at + 1) + std::to_string(0.5 * static_cast<double>(row / 2)) +
-              text.substr(text.find(',', begin + 1), end + 1 - text.find(',', begin + 1));
-    at = end + 1;
+  for (std::size_t at = stamps.size(); at < text.size(); ++row) {  // two rows for every stamp
+    const std::size_t end = text.find('\n', at) + 1;
+    const std::size_t comma = text.find(',', at);
+    stamps += fmt::format("{}", 0.5 * static_cast<double>(row / 2));
+    stamps += text.substr(comma, end - comma);
+    at = end;
   }
   write("b.csv", stamps);
   expect_nothing_written("health a.csv b.csv --align none",
