@@ -19,7 +19,7 @@ endfunction()
 
 # kelpie_join_sources(TARGET): with KELPIE_JOIN_SOURCES, compiles all sources of a target as one
 # unit, because most compile time goes into headers that the sources share. Every source still
-# includes what it uses: the presets `debug` and `sanitize` compile the sources one by one.
+# includes what it uses: the preset `debug` compiles the sources one by one.
 function(kelpie_join_sources target)
   if(KELPIE_JOIN_SOURCES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)

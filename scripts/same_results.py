@@ -4,7 +4,8 @@
 
 Usage, after a release build of each commit, with the Python that kelpie's module was built for:
   scripts/same_results.py record BUILD_FOLDER OUT_FOLDER [PART]
-                          learns every log at hand with one build; PART: only names that contain PART
+                          learns every log at hand with one build; PART: only names that contain PART;
+                          exit code 1 where a command fails
   scripts/same_results.py compare OUT_FOLDER OTHER_FOLDER
                           lists the numbers that differ; exit code 1 where some do
 Logs: $KELPIE_DATA_DIR, else ../shared/data beside the checkout; simulated logs where both lack.
@@ -89,7 +90,7 @@ def other_commands(kelpie, out):
                           out / "dagon_blocks/model.json", "--out", out / "rollout"]
         yield "compare", [kelpie, "compare", dagon, *DAGON, "--out", out / "compare"]
     if bag.exists():
-        yield "live", [kelpie, "live", "--config", live_configuration(out), "--from", bag,
+        yield "live", [kelpie, "live", "--config", live_configuration(out), "--replay", bag,
                        "--speed", "max", "--out", out / "live"]
 
 
@@ -112,21 +113,25 @@ def python_predictions(build, log):
     return hashlib.sha256(np.concatenate(said).tobytes()).hexdigest()
 
 
-def run(words, log):
+def run(words, log, failed):
+    """Runs a command; notes one that fails in the list `failed`."""
     words = [str(word) for word in words]
     done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
     log.write(f"{' '.join(words)}\n-> {done.returncode} {done.stderr[-500:]}\n")
     print(f"exit code {done.returncode}: {' '.join(words[1:3])}", flush=True)
+    if done.returncode != 0:
+        failed.append(" ".join(words))
     return done
 
 
 def record(build, out, part):
     kelpie = build / "kelpie"
+    failed = []
     (out / "simulated").mkdir(parents=True, exist_ok=True)
     with open(out / "commands.log", "w", encoding="utf-8") as log:
         for scenario in ("small", "aba"):
             run([kelpie, "simulate", ROOT / f"scenarios/{scenario}.toml", "--out",
-                 out / f"simulated/{scenario}.csv"], log)
+                 out / f"simulated/{scenario}.csv"], log, failed)
         for name, source, options in learning_cases():
             source = Path(str(source).format(simulated=out / "simulated"))
             if part not in name or not source.exists():
@@ -135,17 +140,20 @@ def record(build, out, part):
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir()
             words = [str(option).format(out=folder) for option in options]
-            run([kelpie, "learn", source, *words, "--out", folder], log)
+            run([kelpie, "learn", source, *words, "--out", folder], log, failed)
         for name, words in other_commands(kelpie, out):
             if part in name:
                 shutil.rmtree(out / name, ignore_errors=True)
-                run(words, log)
+                run(words, log, failed)
         if part in "programs":
-            (out / "programs.json").write_text(json.dumps(programs(build, log), indent=1),
-                                               encoding="utf-8")
+            (out / "programs.json").write_text(json.dumps(programs(build, log, failed),
+                                                          indent=1), encoding="utf-8")
+    for words in failed:
+        print(f"failed: {words}", file=sys.stderr)
+    return 1 if failed else 0
 
 
-def programs(build, log):
+def programs(build, log, failed):
     """What the Python class and the examples say."""
     said = {}
     if (DATA / "dagon_config1.csv").exists():
@@ -153,7 +161,7 @@ def programs(build, log):
     for name in ("01_learner", "02_vehicle_model", "07_in_c", "08_messages"):
         program = build / "examples" / name
         if program.exists():
-            said[name] = run([program], log).stdout
+            said[name] = run([program], log, failed).stdout
     return said
 
 
@@ -200,8 +208,7 @@ def main():
         return 2
     folders = [Path(word).resolve() for word in words[1:3]]
     if words[0] == "record":
-        record(*folders, "".join(words[3:]))
-        return 0
+        return record(*folders, "".join(words[3:]))
     return compare(*folders)
 
 

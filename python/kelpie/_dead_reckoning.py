@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
-from typing import Optional
+import os
+from typing import Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _kelpie
 from ._estimators import DynamicsModel
+from ._log import existing
+
+_Model = Union[DynamicsModel, str, "os.PathLike[str]"]
 
 
 class DeadReckoning:
@@ -27,7 +31,7 @@ class DeadReckoning:
     checks : recognises repeated values and exact zeros of the velocity log (faults).
     """
 
-    def __init__(self, model: DynamicsModel | str, *, planar: bool = True, current: float = 0.1,
+    def __init__(self, model: _Model, *, planar: bool = True, current: float = 0.1,
                  practice_s: float = 20.0, between: str = "linear", step_s: float = 0.25,
                  checks: bool = True) -> None:
         if between not in ("linear", "held"):
@@ -36,10 +40,12 @@ class DeadReckoning:
                                                 between == "held", step_s, checks)
 
     @staticmethod
-    def _trained(model: DynamicsModel | str) -> _kelpie.TrainedModel:
-        return _kelpie.TrainedModel.read(model) if isinstance(model, str) else model._trained()
+    def _trained(model: _Model) -> _kelpie.TrainedModel:
+        if isinstance(model, (str, os.PathLike)):
+            return _kelpie.TrainedModel.read(existing(model))
+        return model._trained()
 
-    def use(self, model: DynamicsModel | str) -> None:
+    def use(self, model: _Model) -> None:
         """Goes on with another model of the same inputs; estimate and current stay."""
         self._reckoning.use(self._trained(model))
 

@@ -57,6 +57,15 @@ def inputs_of(X: Any, inputs: Optional[Sequence[str]]) -> Any:
     return X[list(inputs)]
 
 
+def require_inputs(X: Any, inputs: Sequence[str]) -> None:
+    """Raises ValueError on a data frame with names for columns that lacks an input."""
+    if is_frame(X) and all(isinstance(name, str) for name in X.columns):
+        missing = [name for name in inputs if name not in X.columns]
+        if missing:
+            raise ValueError(f"X: lacks the model's inputs {', '.join(missing)}; the columns are "
+                             f"{', '.join(X.columns)}")
+
+
 def index_of(X: Any) -> Any:
     """The index of a data frame of pandas, else None."""
     return X.index if is_frame(X) and type(X).__module__.startswith("pandas") else None

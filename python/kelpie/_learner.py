@@ -85,6 +85,7 @@ class Learner(Parameters):
             model = self._start(given, rows, targets, most_warmup=None)
             return self._learn(model, rows, targets, given)
         names = (self._model.inputs, self._model.targets) if self._by_name else (None, None)
+        self._require_inputs(X)
         given = self._given(X, y, t, unknown, names)
         seen = self._as_seen(given.X) if given.by_name else given.X
         rows, targets = self._checked(seen, given.y)
@@ -393,7 +394,13 @@ class Learner(Parameters):
         self._index = _frames.index_of(given.X)
         return self
 
+    def _require_inputs(self, X: Any) -> None:
+        # After a fit with names, require_same_columns() tells other names.
+        if self._by_name and "feature_names_in_" not in vars(self):
+            _frames.require_inputs(X, self._fitted().inputs)
+
     def _inputs(self, X: ArrayLike) -> Floats:
+        self._require_inputs(X)
         chosen = _frames.inputs_of(X, self._fitted().inputs) if self._by_name else None
         X = X if chosen is None else self._as_seen(chosen)
         rows = _arrays.matrix(X)

@@ -157,13 +157,13 @@ def _words(options: dict[str, Any]) -> list[str]:
     for name, value in options.items():
         if value is None or value is False:
             continue
-        words.append("--" + name.replace("_", "-"))
+        option = "--" + name.replace("_", "-")
         if isinstance(value, Mapping):
-            words.append(",".join(f"{key}={part}" for key, part in value.items()))
-        elif isinstance(value, (list, tuple)):
-            words.append(",".join(str(part) for part in value))
-        elif value is not True:
-            words.append(os.fspath(value) if isinstance(value, os.PathLike) else str(value))
+            value = [f"{key}={part}" for key, part in value.items()]
+        for part in value if isinstance(value, (list, tuple)) else [value]:
+            words.append(option)
+            if part is not True:
+                words.append(os.fspath(part) if isinstance(part, os.PathLike) else str(part))
     return words
 
 

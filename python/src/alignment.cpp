@@ -62,7 +62,10 @@ std::vector<std::string> command_names(const Array& x, const Array& y, const Arr
 py::tuple find(const Array& x, const Array& y, const Array& t, double rate_hz,
                const std::vector<std::string>& inputs, const std::string& states) {
   const AllRows all(x, y, t, rate_hz, inputs, states);
-  const AlignmentResult found = find_alignment(all.problem);
+  const AlignmentResult found = [&] {
+    const py::gil_scoped_release release;
+    return find_alignment(all.problem);
+  }();
   return py::make_tuple(found.alignment.lag_s, found.alignment.commands,
                         actuators_of(found.alignment), found.gain, found.why);
 }

@@ -35,6 +35,7 @@ class LiveModel {
 
   /// DynamicsModel::learn_held_back().
   void learn_held_back() {
+    const py::gil_scoped_release release;
     const std::unique_lock lock(mutex_);
     model_.learn_held_back();
   }

@@ -46,6 +46,20 @@ def test_goes_through_an_outage_with_an_honest_deviation(learned):
     assert np.all(np.linalg.eigvalsh(reckoning.position_covariance) > 0.0)
 
 
+def test_a_model_may_be_a_file(learned, tmp_path):
+    model, t, x = learned
+    model.save(tmp_path / "model.json")
+    reckoning = kelpie.DeadReckoning(tmp_path / "model.json")
+    reckoning.use(str(tmp_path / "model.json"))
+    reckoning.update(x[0], t[0])
+    assert reckoning.started
+    for none in (tmp_path / "none.json", str(tmp_path / "none.json")):
+        with pytest.raises(FileNotFoundError):
+            kelpie.DeadReckoning(none)
+        with pytest.raises(FileNotFoundError):
+            reckoning.use(none)
+
+
 def test_names_what_is_wrong(learned):
     model, _, x = learned
     with pytest.raises(ValueError, match="between"):

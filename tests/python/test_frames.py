@@ -81,6 +81,18 @@ def test_a_loaded_model_takes_its_columns(log, table, model, tmp_path):
     assert np.array_equal(loaded.predict(table), other.predict(log.X))
 
 
+def test_a_loaded_model_takes_no_other_column_in_place_of_its_own(log, table, model, tmp_path):
+    model.save(tmp_path / "model.json")
+    loaded = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    wrong = log_frame(log).rename(columns={"n1": "battery"})
+    with pytest.raises(ValueError, match="lacks the model's inputs n1; the columns are"):
+        loaded.predict(wrong)
+    with pytest.raises(ValueError, match="lacks the model's inputs n1"):
+        loaded.partial_fit(wrong, log.y, log.t)
+    plain = pandas.DataFrame(log.X)  # no names: columns count by their places
+    assert np.array_equal(loaded.predict(plain), model.predict(log.X))
+
+
 def test_velocities_are_known_wherever_they_stand(log, table):
     columns = ["n1", "u", "n2", "v"]
     found = kelpie.DynamicsModel(**PLAIN).fit(table[columns], table[TARGETS])

@@ -118,6 +118,27 @@ def test_comparisons_and_searches(table, compared):
     assert tuned.table.loc[("gamma", "vdot"), "value"] == tuned["tuned"]["gamma"].split(",")[-1]
 
 
+def test_options_may_be_lists(table, tmp_path):
+    tuned = kelpie.tune(table, candidates=2, settings=QUICK, split="pieces", accept=["implausible"],
+                        search=["gamma=0.1,0.2", "k=5:10"])
+    assert set(tuned["tuned"]["gamma"].split(",")) <= {"0.1", "0.2"}
+    models = [tmp_path / "a.json", tmp_path / "b.json"]
+    for file in models:
+        kelpie.report(table, settings=QUICK).model.save(file)
+    found = kelpie.report(table, settings=QUICK, nominal=models, inputs=INPUTS)
+    assert all(str(file) in json.dumps(found) for file in models)
+
+
+def test_a_call_leaves_nothing_behind_for_the_next(table, capfd):
+    brief = kelpie.report(table, settings=QUICK)
+    whole = kelpie.report(table, settings=QUICK, verbose=True)
+    assert len(whole.text) > len(brief.text)
+    document = kelpie.report(table, settings=QUICK, json=True)
+    assert learned(json.loads(document.text)) == learned(document)
+    assert kelpie.report(table, settings=QUICK).text.splitlines()[0] == brief.text.splitlines()[0]
+    assert capfd.readouterr().out == ""
+
+
 def test_a_vehicle_is_identified(command, tmp_path):
     (tmp_path / "scenario.toml").write_text(
         f'vehicle = "{SOURCE_DIR}/vehicles/dagon.toml"\nrate_hz = 4.0\nnoise = "as_recorded"\n'

@@ -98,7 +98,7 @@ std::vector<std::string> next_commands(const CompareArguments& options,
                                        const study::Comparison& comparison) {
   const study::Contest* const better = comparison.better_variant();
   return {fmt::format("kelpie learn {}{}", options.text(options.config),
-                      better != nullptr ? " --set " + better->name : "")};
+                      better != nullptr ? " --set " + shell_word(better->name) : "")};
 }
 
 void run_compare(const CompareArguments& options) {
@@ -132,7 +132,7 @@ void add_compare(CLI::App& app) {
   add_split_option(*command, options->split, "held-out rows, the same for all (see `learn`)");
   add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
-  add_current_option(*command, options->current);
+  add_current_option(*command, *options);
   add_accept_option(*command, options->accept);
   add_file(command, "--config", options->config, "TOML file with settings of kelpie");
   add_set(command, options->set);

@@ -65,7 +65,7 @@ void add_config(CLI::App& app) {
   command->add_flag("--all", options->all,
                     "all settings, by groups, instead of the essential ones");
   command->add_flag("--markdown", options->markdown, "tables of docs/reference/settings.md");
-  add_examples(command, "config > settings.toml", "config --all --preset paper --axes 3");
+  add_examples(command, "config > settings.toml", "config --all --set preset=paper --axes 3");
 }
 
 }  // namespace kelpie::cli

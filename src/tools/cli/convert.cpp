@@ -65,7 +65,15 @@ void to_mcap(const ConvertArguments& options) {
   warn("{}", bag->losses_text());
 }
 
+// Rows of --columns alone have a choice of clocks.
+void check_clock_option(const ConvertArguments& options) {
+  require(options.clock == ConvertArguments{}.clock ||
+              (options.config.empty() && options.out.ends_with(".csv")),
+          "--clock", "is of the rows of --columns; [log] of --config says its own clock");
+}
+
 void convert(const ConvertArguments& options) {
+  check_clock_option(options);
   check_output("--out", options.out, {options.bag.path, options.config});
   if (!options.config.empty()) {
     to_samples(options);

@@ -31,17 +31,29 @@ struct ExportArguments {
   format::CodeOptions code;
 };
 
-format::CodeOptions code_options(const ExportArguments& options,
-                                 const std::map<std::string, Unit>& units) {
+std::map<std::string, Unit> given_units(const ExportArguments& options) {
+  std::map<std::string, Unit> units;
+  for (const std::string& assignment : options.units) {
+    const auto [column, unit] = format::key_and_value(assignment, "--units");
+    units[column] = Unit::parse(unit);
+  }
+  return units;
+}
+
+// With the units given, and else the model's own.
+format::CodeOptions code_options(const ExportArguments& options, const format::ModelInfo& info,
+                                 std::map<std::string, Unit> units) {
   format::CodeOptions code = options.code;
   code.source = options.model;
-  code.units = units;
+  code.units = std::move(units);
+  for (const auto& [column, text] : info.units) {
+    code.units.try_emplace(column, Unit::parse(text));
+  }
   return code;
 }
 
-void export_c(const TrainedModel& model, const ExportArguments& options,
-              const format::CodeOptions& code) {
-  file::write_file_whole(options.c_file, format::model_c(model, code));
+void tell_c(const TrainedModel& model, const ExportArguments& options,
+            const format::CodeOptions& code) {
   say("C: {} ({} inputs, {} predictions, {})\n", options.c_file, model.input_names.size(),
       model.axes.size(), code.single ? "float" : "double");
   say("{:.0f} kB of constants, no memory but the stack\n",
@@ -57,22 +69,29 @@ void export_live(const TrainedModel& model, const format::LiveFiles& files,
       files.block.string(), files.source.string());
 }
 
-void write_header(const TrainedModel& model, const ExportArguments& options,
-                  format::CodeOptions code) {
+std::string header_text(const TrainedModel& model, const ExportArguments& options,
+                        format::CodeOptions code) {
   if (!options.live.empty()) {
     code.live = {.file = {}, .layout = {}};  // prototypes need neither
   }
-  file::write_file_whole(options.header, format::model_h(model, code));
+  return format::model_h(model, code);
 }
 
-// The model's own units, and those given beside.
-fmu::FmuOptions fmu_options(const format::ModelInfo& info, const ExportArguments& options,
-                            const std::map<std::string, Unit>& given) {
-  fmu::FmuOptions unit{.name = options.code.name, .units = given};
-  for (const auto& [column, text] : info.units) {
-    unit.units.try_emplace(column, Unit::parse(text));
+// Every file but those of --live, by path; nothing is written before all have a content.
+std::map<std::string, std::string> contents(const TrainedModel& model,
+                                            const ExportArguments& options,
+                                            const format::CodeOptions& code) {
+  std::map<std::string, std::string> files;
+  if (!options.c_file.empty()) {
+    files[options.c_file] = format::model_c(model, code);
   }
-  return unit;
+  if (!options.header.empty()) {
+    files[options.header] = header_text(model, options, code);
+  }
+  if (!options.fmu.empty()) {
+    files[options.fmu] = fmu::fmu_content(model, {.name = code.name, .units = code.units});
+  }
+  return files;
 }
 
 void check_outputs(const ExportArguments& options) {
@@ -93,33 +112,41 @@ void check_outputs(const ExportArguments& options) {
   }
 }
 
-void export_model(const ExportArguments& options) {
+// What of C is asked for has to be written.
+void check_wishes(const ExportArguments& options) {
   if (options.c_file.empty() && options.live.empty() && options.fmu.empty()) {
     throw InputError("export", "needs --c FILE, --live FILE or --fmu FILE: what to write");
   }
-  if (!options.header.empty() && options.c_file.empty() && options.live.empty()) {
-    throw InputError("--header", "needs --c FILE or --live FILE");
+  if (!options.c_file.empty() || !options.live.empty()) {
+    return;
   }
+  const std::pair<const char*, bool> wishes[]{{"--header", !options.header.empty()},
+                                              {"--float", options.code.single},
+                                              {"--assess", options.code.assess},
+                                              {"--casadi", options.code.casadi}};
+  for (const auto& [option, is_given] : wishes) {
+    require(!is_given, option, "needs --c FILE or --live FILE");
+  }
+}
+
+void export_model(const ExportArguments& options) {
+  check_wishes(options);
   check_outputs(options);
-  std::map<std::string, Unit> units;
-  for (const std::string& assignment : options.units) {
-    const auto [column, unit] = format::key_and_value(assignment, "--units");
-    units[column] = Unit::parse(unit);
-  }
+  std::map<std::string, Unit> units = given_units(options);
   format::ModelInfo info;
   const TrainedModel model = read_given_model(options.model, &info);
-  const format::CodeOptions code = code_options(options, units);
-  if (!options.c_file.empty()) {
-    export_c(model, options, code);
-  }
+  const format::CodeOptions code = code_options(options, info, std::move(units));
+  const std::map<std::string, std::string> files = contents(model, options, code);
   if (!options.live.empty()) {
     export_live(model, format::LiveFiles(options.live), code);
   }
-  if (!options.header.empty()) {
-    write_header(model, options, code);
+  for (const auto& [file, content] : files) {
+    file::write_file_whole(file, content);
+  }
+  if (!options.c_file.empty()) {
+    tell_c(model, options, code);
   }
   if (!options.fmu.empty()) {
-    fmu::write_fmu(options.fmu, model, fmu_options(info, options, units));
     say("FMU: {} (FMI 2.0, co-simulation, this machine's processor)\n", options.fmu);
   }
 }

@@ -54,7 +54,8 @@ struct HealthArguments : PlanOptions {
 struct Mission {
   std::string file;
   std::string name;
-  double day = NAN;  // of the log's time 0, since 1970
+  double day = NAN;      // of the log's time 0, since 1970
+  std::string glides{};  // file of its steady glides
 };
 using Fleet = std::map<std::string, std::vector<Mission>>;
 
@@ -88,6 +89,24 @@ Fleet find_logs(const HealthArguments& options) {
   return fleet;
 }
 
+// Names the files of --glide-csv, each of its own. Returns the names.
+std::vector<std::string> name_glides(Fleet& fleet) {
+  std::map<std::string, std::string> logs;  // by the file of the glides
+  std::vector<std::string> names;
+  for (auto& [vehicle, missions] : fleet) {
+    for (Mission& mission : missions) {
+      mission.glides = (fleet.size() > 1 ? vehicle + "_" : "") + mission.name + kGlideEnding;
+      const auto [taken, is_new] = logs.emplace(mission.glides, mission.file);
+      require(is_new, "--glide-csv",
+              fmt::format("would write the glides of {} and {} to one file, {}; give the logs "
+                          "different names, or in different commands",
+                          taken->second, mission.file, mission.glides));
+      names.push_back(mission.glides);
+    }
+  }
+  return names;
+}
+
 // The first log of a vehicle settles columns and alignment of all.
 struct Reader {
   const HealthArguments& options;
@@ -111,10 +130,10 @@ struct Reader {
     if (!first->current.current.none()) {
       one.log.inputs.push_back(first->current.current.heading);
     }
-    const std::optional<file::TomlNode> root =
-        one.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(one.config));
-    const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
+    const log::LogConfig config = log::read_log_config(one.config);
     log::Dataset data = open_log(one.log.source, config, one.log.over(config.roles)).dataset();
+    check_clock(data, options);
+    check_targets(data, first->settings.shared.states, options);
     AlignmentResult known = first->alignment;
     known.alignment.water = {};
     return study::plan_learning(std::move(data), study::parse_split("none", 1), first->settings,
@@ -205,7 +224,7 @@ health::HealthTable judge_gliders(const HealthArguments& options,
   health::HealthTable judged =
       health::judge_gliders(logs, columns, options.writes_glides ? &glides : nullptr);
   for (std::size_t i = 0; i < glides.size(); ++i) {
-    files[logs[i].mission + kGlideEnding] = log::csv_text(glides[i]);
+    files[missions[i].glides] = log::csv_text(glides[i]);
   }
   return judged;
 }
@@ -225,24 +244,25 @@ health::HealthCard card_of(const HealthArguments& options, const std::string& ve
 void run_health(const HealthArguments& options) {
   options.answer.begin();
   const std::vector<health::Baseline> baselines = baselines_of(options);
-  const Fleet fleet = find_logs(options);
+  Fleet fleet = find_logs(options);
   require(!options.writes_glides || !options.glider.empty(), "--glide-csv", "needs --glider");
   std::vector<std::string> inputs{options.config};
-  std::vector<std::string> names{kHealthJson, kHealthHtml};
+  std::vector<std::string> names;
+  if (options.writes_glides) {
+    names = name_glides(fleet);
+  }
+  names.insert(names.end(), {kHealthJson, kHealthHtml});
   for (const auto& [vehicle, missions] : fleet) {
     for (const Mission& mission : missions) {
       inputs.push_back(mission.file);
-      if (options.writes_glides) {
-        names.push_back(mission.name + kGlideEnding);
-      }
     }
   }
+  const file::OutFolder out = take_out_folder(options.out, names, inputs);
   std::vector<health::HealthCard> cards;
   file::FileSet files;
   for (const auto& [vehicle, missions] : fleet) {
     cards.push_back(card_of(options, vehicle, missions, baselines, files));
   }
-  const file::OutFolder out = take_out_folder(options.out, names, inputs);
   const std::string json = health::cards_json(cards);
   files[kHealthJson] = json;
   files[kHealthHtml] = report::health_html(cards);
@@ -281,7 +301,7 @@ void add_health(CLI::App& app) {
   command->add_flag("--glide-csv", options->writes_glides,
                     "write each glider's log with the speeds of steady gliding, for `learn`");
   add_align_option(*command, options->align);
-  add_current_option(*command, options->current);
+  add_current_option(*command, *options);
   add_accept_option(*command, options->accept);
   add_out(command, options->out, "folder for health.json and health.html");
   options->answer.add_to(*command, kHealthJson);

@@ -59,7 +59,6 @@ constexpr std::array kEngineFiles{
     EngineFile{"ardupilot", "ardupilot.parm", format::ardupilot_parm}};
 
 struct IdentifyArguments : IdentificationOptions {
-  std::optional<int> only;
   std::optional<double> mass_kg;
   std::optional<double> surge_added_mass_kg;
   SixAxisOptions six;
@@ -189,11 +188,13 @@ Identified in_plane(const IdentifyArguments& options, const study::KnownThrust& 
                     const Base& base) {
   PlanOptions wanted = options;
   wanted.with_lags = true;
+  wanted.check_targets = false;  // study::identify() does
   wanted.log.source.with_poses = true;
   const study::LearnPlan log = plan_log(wanted).plan;
   const study::PlanarColumns columns =
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
-  Identified result{.found = study::identify(log.data, log.split, columns, wish, options.only),
+  Identified result{.found = study::identify(log.data, log.split, columns, wish, options.only,
+                                             !options.accept.empty()),
                     .frame = body_frame(options.six.frame, false)};
   result.found.alignment = study::alignment_text(log.alignment, log.data.rate_hz);
   result.found.lags = log.lags;
@@ -233,6 +234,21 @@ file::FileSet files_of(const Identified& result, const std::vector<EngineFile>& 
   return files;
 }
 
+// The log and the options of `identify`.
+std::string again_text(const IdentifyArguments& options) {
+  std::string text = options.text(options.config);
+  const auto add = [&](const char* option, const std::string& value) {
+    text += value.empty() ? "" : fmt::format(" {} {}", option, shell_word(value));
+  };
+  add("--thrusters", join_text(options.thrusters, ","));
+  add("--only", options.only ? std::to_string(*options.only) : "");
+  add("--vehicle", options.six.vehicle);
+  add("--volts", options.six.volts);
+  add("--frame", options.six.frame);
+  add("--for", join_text(options.engines, ","));
+  return text;
+}
+
 void run_identify(const IdentifyArguments& given) {
   given.answer.begin();
   IdentifyArguments options = given;
@@ -241,10 +257,10 @@ void run_identify(const IdentifyArguments& given) {
       options.six.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.six.vehicle));
   const study::KnownThrust wish = known_thrust(options, base);
   const std::vector<EngineFile> wanted = wanted_files(options.engines);
-  Identified result = identified(options, wish, base);
   std::vector<std::string> inputs = options.files();
   inputs.push_back(options.six.vehicle);
   const file::OutFolder out = take_out_folder(options.out, all_files(), inputs);
+  Identified result = identified(options, wish, base);
   if (result.vehicle) {
     result.vehicle->usual_speed = format::usual_speed(result.drive);
     result.found.certificates = certificates_of(*result.vehicle, result.drive, wanted);
@@ -260,7 +276,7 @@ void run_identify(const IdentifyArguments& given) {
   answer.add_files(files, out.path());
   answer.next = {result.found.scale == study::ScaleSource::none
                      ? fmt::format("kelpie identify {} --mass KG   (masses and forces, not ratios)",
-                                   options.text(options.config))
+                                   again_text(given))
                      : "kelpie simulate SCENARIO.toml   (docs/reference/simulator.md)"};
   give(answer, options.answer);
 }
@@ -273,8 +289,6 @@ void add_identify(CLI::App& app) {
       run_identify);
   add_identification_options(*command, *options);
   add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");
-  command->add_option("--only", options->only,
-                      "number of the configuration; else the first in the log");
   command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]")
       ->check(within(kLeastMass, kMostScale));
   command

@@ -53,10 +53,12 @@ LearnableLog look_at(const log::LogSource& source, const log::Draft& draft) {
 }
 
 void inspect(const InspectArguments& options) {
+  std::vector<std::string> taken{options.log.path};
   for (const auto& [option, file] :
        {std::pair("--json", options.json), std::pair("--template", options.draft)}) {
     if (!file.empty()) {
-      check_output(option, file, {options.log.path});
+      check_output(option, file, taken);
+      taken.push_back(file);
     }
   }
   const auto [report, draft, losses] = log::inspect_log(options.log);

@@ -285,6 +285,25 @@ file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std
   return take_out_folder(options.out, written, read);
 }
 
+// The log for the next commands; learned anew only where no other log follows, of other times.
+report::LogWords words_of(const LearnArguments& options) {
+  report::LogWords words{.file = shell_word(options.log.source.path),
+                         .learning = {},
+                         .judging = options.judging_text(options.config)};
+  if (options.more.empty()) {
+    PlanOptions again = options;
+    again.since_s.reset();
+    std::string text = again.learning_text(options.config);
+    for (const std::string& file : options.nominal) {
+      text += " --nominal " + shell_word(file);
+    }
+    text += options.frame.empty() ? "" : " --frame " + options.frame;
+    words.learning =
+        text + (options.scales == "first" ? "" : " --scales " + shell_word(options.scales));
+  }
+  return words;
+}
+
 // What was written and what a user of a new model needs next.
 Answer answer_of(const LearnArguments& options, const study::StreamResult& result, bool has_model,
                  bool has_draft, const std::vector<report::NextStep>& next) {
@@ -359,10 +378,11 @@ void learn(const LearnArguments& options) {
   const study::StreamResult result = learn_with_progress(options, plan, model, earlier, identity);
   std::vector<report::NextStep> next;
   if (model.ready() && report::is_poor(result)) {
-    next = report::after_poor_model(options.log.source.path, options.text(options.config));
+    next =
+        report::after_poor_model(shell_word(options.log.source.path), options.text(options.config));
   } else if (model.ready()) {
-    next = report::after_learning(result, options.text(options.config),
-                                  (folder.path() / "model.json").string());
+    next = report::after_learning(result, words_of(options),
+                                  shell_word((folder.path() / "model.json").string()));
   }
   const bool has_model =
       write_results(folder.path(), result, model,
@@ -408,7 +428,7 @@ void add_learn(CLI::App& app) {
       ->type_name("{first,train,FILE}");
   add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
-  add_current_option(*command, options->current);
+  add_current_option(*command, *options);
   add_accept_option(*command, options->accept);
   command->add_option("--validate-every", options->validate_every,
                       "training samples between two validations; 0: 200 in all");

@@ -73,7 +73,7 @@ log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new
   if (options.since_s) {
     data = log::rows_since(data, *options.since_s);
   }
-  tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
+  check_clock(data, options);
   return data;
 }
 
@@ -111,7 +111,22 @@ void check_terms(const ModelSettings& settings, const log::Dataset& data,
   }
 }
 
+// Appends an option with a value, unless the value is empty.
+void add_option(std::string& text, const char* option, const std::string& value) {
+  text += value.empty() ? "" : fmt::format(" {} {}", option, shell_word(value));
+}
+
 }  // namespace
+
+void check_clock(const log::Dataset& data, const PlanOptions& options) {
+  tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
+}
+
+std::string check_targets(const log::Dataset& data, const std::string& states,
+                          const PlanOptions& options) {
+  return tell_mistakes(data.source, "targets", log::target_mistakes(data, states),
+                       !options.accept.empty());
+}
 
 log::Dataset new_dataset(log::Log opened) {
   warn("{}", log::left_out_text(opened.table, opened.roles));
@@ -174,15 +189,16 @@ log::Roles LogOptions::over(const log::Roles& file) const {
 }
 
 std::string LogOptions::text() const {
-  std::string text = source.path;
-  const auto add = [&](const char* option, const std::string& value) {
-    text += value.empty() ? "" : fmt::format(" {} {}", option, value);
-  };
-  add("--msg-dir", source.definitions);
-  add("--time", time);
-  add("--rate", rate_hz > 0.0 ? fmt::format("{:g}", rate_hz) : "");
-  add("--units", join_text(units, ","));
-  add("--pose", join_text(pose, ","));
+  std::string text;
+  add_option(text, "--msg-dir", source.definitions);
+  text += source.mode == bag::ReadMode::recover  ? " --recover"
+          : source.mode == bag::ReadMode::strict ? " --strict"
+                                                 : "";
+  add_option(text, "--time", time);
+  add_option(text, "--rate", rate_hz > 0.0 ? fmt::format("{}", rate_hz) : "");
+  add_option(text, "--units", join_text(units, ","));
+  add_option(text, "--pose", join_text(pose, ","));
+  add_option(text, "--configuration", configuration);
   return text;
 }
 
@@ -192,10 +208,36 @@ std::vector<std::string> PlanOptions::files() const {
   return files;
 }
 
+std::string PlanOptions::judging_text(const std::string& configuration) const {
+  std::string text = log.text();
+  add_option(text, "--config", configuration);
+  add_option(text, "--split", split == PlanOptions().split ? "" : split);
+  return text + (seed == PlanOptions().seed ? "" : fmt::format(" --seed {}", seed));
+}
+
 std::string PlanOptions::text(const std::string& configuration) const {
-  return log.text() + (configuration.empty() ? "" : " --config " + configuration) +
-         (split == PlanOptions().split ? "" : " --split " + split) +
-         (seed == PlanOptions().seed ? "" : fmt::format(" --seed {}", seed));
+  std::string logs = shell_word(log.source.path);
+  for (const std::string& path : more) {
+    logs += " " + shell_word(path);
+  }
+  return logs + learning_text(configuration);
+}
+
+std::string PlanOptions::learning_text(const std::string& configuration) const {
+  std::string text = judging_text(configuration);
+  add_option(text, "--inputs", join_text(log.inputs, ","));
+  add_option(text, "--targets", join_text(log.targets, ","));
+  add_option(text, "--ignore", join_text(log.ignored, ","));
+  add_option(text, "--since", since_s ? fmt::format("{}", *since_s) : "");
+  add_option(text, "--align", align == PlanOptions().align ? "" : align);
+  add_option(text, "--current", has_current && current == "none" ? current : "");
+  for (const std::string& name : accept) {
+    add_option(text, "--accept", name);
+  }
+  for (const std::string& assignment : set) {
+    add_option(text, "--set", assignment);
+  }
+  return text;
 }
 
 PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
@@ -221,9 +263,7 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
                       : format::make_settings(log.config, options.set, data.target_names.size());
   check_terms(settings, data, options.config);
   if (options.check_targets) {
-    log.doubt =
-        tell_mistakes(data.source, "targets", log::target_mistakes(data, settings.shared.states),
-                      !options.accept.empty());
+    log.doubt = check_targets(data, settings.shared.states, options);
   }
   const format::LearnedLog without_heading =
       format::learned_log(study::without_inputs(data, {data.heading_column}));
@@ -276,10 +316,11 @@ void add_align_option(CLI::App& command, std::string& align) {
       ->type_name("{auto,none,SECONDS}");
 }
 
-void add_current_option(CLI::App& command, std::string& current) {
-  current = "auto";
+void add_current_option(CLI::App& command, PlanOptions& options) {
+  options.has_current = true;
+  options.current = "auto";
   command
-      .add_option("--current", current,
+      .add_option("--current", options.current,
                   "current of the water: auto (found on the training rows of a log with a heading, "
                   "and taken off the velocities), or none")
       ->check(CLI::IsMember({"auto", "none"}))
@@ -287,7 +328,7 @@ void add_current_option(CLI::App& command, std::string& current) {
 }
 
 void add_known_current_option(CLI::App& command, std::string& current) {
-  current = "learned";
+  current = kUsualCurrent;
   command
       .add_option("--current", current,
                   "current of the log, for a model of velocities through the water: learned (as "
@@ -305,7 +346,7 @@ void settle_current(const std::string& wish, bool is_learned, const std::string&
     water.velocity.clear();
     return;
   }
-  if (wish == "learned") {
+  if (wish == kUsualCurrent) {
     if (!is_learned) {
       throw InputError(
           {.file = log, .line = 0, .field = "--current"},
@@ -350,7 +391,6 @@ void add_units_option(CLI::App& command, std::vector<std::string>& units) {
 }
 
 void add_identification_options(CLI::App& command, IdentificationOptions& options) {
-  options.check_targets = false;
   options.log.add_to(command);
   add_files(&command, "more", options.more, "logs of the same columns, joined to the first");
   add_since_option(command, options.since_s);
@@ -361,6 +401,9 @@ void add_identification_options(CLI::App& command, IdentificationOptions& option
            "inputs that are thrusters' speeds, separated by commas; else by their names");
   add_list(&command, "--thrust", options.thrust,
            "gives the scale: NAME=K, forward thrust K n² in N (repeatable: the mean)");
+  command.add_option("--only", options.only,
+                     "number of the configuration; else the first in the log");
+  add_accept_option(command, options.accept);
 }
 
 std::vector<std::pair<std::string, double>> known_thrusts(const std::vector<std::string>& thrust) {

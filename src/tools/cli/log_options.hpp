@@ -43,8 +43,8 @@ struct LogOptions {
   /// column.
   log::Roles over(const log::Roles& file) const;
 
-  /// The log and these options as another command takes them, without inputs and targets, which a
-  /// model knows: "log.csv --rate 4 --units r=deg/s".
+  /// These options as a shell takes them, beside the log, without inputs and targets, which a model
+  /// knows: " --rate 4 --units r=deg/s".
   std::string text() const;
 };
 
@@ -58,16 +58,30 @@ struct PlanOptions {
   std::string split = "auto";
   std::string align = "auto";
   std::string current = "none";
+  bool has_current = false;           ///< there is the option --current
   bool with_lags = false;             ///< LearnPlan::lags
-  bool check_targets = true;          ///< log::target_mistakes()
+  bool check_targets = true;          ///< check_targets() in plan_log()
   std::vector<std::string> accept{};  ///< --accept
   std::uint64_t seed = 1;
 
   std::vector<std::string> files() const;  ///< logs and configuration file
 
-  /// LogOptions::text() with the split and a configuration file ("": none).
+  /// The options of a command that judges a model on the log, as given; `configuration`: file ("":
+  /// none). " --rate 4 --split tail".
+  std::string judging_text(const std::string& configuration) const;
+  /// All options of plan_log(), as given.
+  std::string learning_text(const std::string& configuration) const;
+  /// The logs with learning_text(): "log.csv --rate 4".
   std::string text(const std::string& configuration) const;
 };
+
+/// Checks the clock of a log (log::clock_mistakes()). Prints to stderr the mistakes that hardly
+/// harm, or that the options accept. Throws InputError (file) with the others.
+void check_clock(const log::Dataset& data, const PlanOptions& options);
+
+/// Checks the targets likewise (log::target_mistakes()). Returns the accepted mistakes.
+std::string check_targets(const log::Dataset& data, const std::string& states,
+                          const PlanOptions& options);
 
 /// A log, or several joined ones, read and ready to be learned.
 struct PlannedLog {
@@ -106,7 +120,9 @@ void add_frame_option(CLI::App& command, std::string& frame);
 Frame body_frame(const std::string& name, bool six_axes);
 
 /// The option --current of commands that learn: auto or none.
-void add_current_option(CLI::App& command, std::string& current);
+void add_current_option(CLI::App& command, PlanOptions& options);
+
+inline constexpr const char* kUsualCurrent = "learned";
 
 /// The option --current of commands that take a model: learned, none, or two speeds.
 void add_known_current_option(CLI::App& command, std::string& current);
@@ -126,8 +142,9 @@ void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
 /// The option --units: columns whose values are converted to the SI.
 void add_units_option(CLI::App& command, std::vector<std::string>& units);
 
-/// The options of `kelpie identify` and `kelpie plan`, which have a check of targets of their own.
+/// The options of `kelpie identify` and `kelpie plan`.
 struct IdentificationOptions : PlanOptions {
+  std::optional<int> only;  ///< configuration; else the first in the log
   std::vector<std::string> thrusters;
   std::vector<std::string> thrust;  ///< known_thrusts()
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -76,12 +77,8 @@ void AnswerOptions::add_to(CLI::App& command, const std::string& document) {
 }
 
 void AnswerOptions::begin() const {
-  if (quiet || json) {
-    hush();
-  }
-  if (!verbose) {
-    be_brief();
-  }
+  hush(quiet || json);
+  be_brief(!verbose);
 }
 
 void Answer::add_files(const file::FileSet& written, const std::filesystem::path& folder,
@@ -116,6 +113,22 @@ void give(const Answer& answer, const AnswerOptions& options) {
   for (const std::string& command : answer.next) {
     say("{:<{}} {}\n", &command == &answer.next.front() ? "next:" : "", widest + 1, command);
   }
+}
+
+std::string shell_word(const std::string& word) {
+  const bool is_plain = !word.empty() && std::ranges::all_of(word, [](char letter) {
+    return static_cast<signed char>(letter) < 0 || (letter >= '0' && letter <= '9') ||
+           (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+           std::string_view("_-+./,:=@%^").find(letter) != std::string_view::npos;
+  });
+  if (is_plain) {
+    return word;
+  }
+  std::string quoted = "'";
+  for (const char letter : word) {
+    quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
+  }
+  return quoted + "'";
 }
 
 void add_set(CLI::App* command, Words& set, const std::string& meaning) {

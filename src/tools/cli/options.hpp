@@ -92,6 +92,9 @@ struct Answer {
 /// Prints the answer to stdout.
 void give(const Answer& answer, const AnswerOptions& options);
 
+/// A word as a shell takes it: in quotes where it has other signs than those of names and numbers.
+std::string shell_word(const std::string& word);
+
 void add_set(CLI::App* command, Words& set,
              const std::string& meaning = "key=value, over the file (repeatable)");
 void add_seed(CLI::App* command, std::uint64_t& seed,

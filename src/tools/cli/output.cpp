@@ -16,11 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Whether two names are of one file, which need not be there yet.
+bool is_one_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) {
+    return true;
+  }
+  const fs::path whole = fs::weakly_canonical(fs::absolute(a, error), error);
+  return !whole.empty() && whole == fs::weakly_canonical(fs::absolute(b, error), error);
+}
+
 // A bag is a file, or a folder with all the files that bags are made of.
 bool is_of_input(const fs::path& file, const fs::path& input) {
   std::error_code error;
   if (!fs::is_directory(input, error)) {
-    return fs::equivalent(file, input, error);
+    return is_one_file(file, input);
   }
   const std::string kind = file.extension().string();
   const bool is_of_bag = kind == ".db3" || kind == ".mcap" || kind == ".yaml";
@@ -69,12 +79,12 @@ void be_silent() {
   silent = true;
 }
 
-void hush() {
-  hushed = true;
+void hush(bool wanted) {
+  hushed = wanted;
 }
 
-void be_brief() {
-  brief = true;
+void be_brief(bool wanted) {
+  brief = wanted;
 }
 
 bool is_brief() {
@@ -82,7 +92,9 @@ bool is_brief() {
 }
 
 void print_document(std::string_view text) {
-  if (!silent) {
+  if (kept != nullptr) {
+    kept->append(text);
+  } else if (!silent) {
     print_safely(stdout, text);
   }
 }
@@ -99,9 +111,10 @@ void print_safely(std::FILE* stream, std::string_view text) {
 }
 
 void print_unless_silent(std::FILE* stream, std::string_view text) {
-  if (kept != nullptr) {
+  const bool is_hushed = hushed && stream == stdout;
+  if (kept != nullptr && !is_hushed) {
     kept->append(text);
-  } else if (!silent && (!hushed || stream != stdout)) {
+  } else if (kept == nullptr && !silent && !is_hushed) {
     print_safely(stream, text);
   }
 }

@@ -39,14 +39,15 @@ void print_unless_silent(std::FILE* stream, std::string_view text);
 /// printed.
 void be_silent();
 
-/// Switches say() off.
-void hush();
+/// Switches say() off, or on again.
+void hush(bool wanted);
 
-/// Leaves tables of the log's signals to --verbose.
-void be_brief();
-bool is_brief();  ///< Whether be_brief() was called.
+/// Whether tables of the log's signals are left to --verbose.
+void be_brief(bool wanted);
+bool is_brief();
 
-/// Prints to the standard output stream, hushed or not, but not after be_silent().
+/// Prints to the standard output stream, hushed or not, but not after be_silent(); a KeptOutput
+/// keeps the text.
 void print_document(std::string_view text);
 
 /// Prints to the standard output stream.

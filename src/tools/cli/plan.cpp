@@ -116,10 +116,12 @@ study::DriveGoal goal_of(const DriveArguments& options, const ExpectedFit& expec
                              });
 }
 
-std::vector<std::size_t> all_rows(const log::Dataset& data) {
-  std::vector<std::size_t> all(data.rows());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
+// All rows of one configuration: a plan needs no held-out rows, but one vehicle.
+std::vector<std::size_t> rows_of_vehicle(const log::Dataset& data, std::optional<int> only) {
+  study::Split all{};
+  all.training.resize(data.rows());
+  std::iota(all.training.begin(), all.training.end(), std::size_t{0});
+  return study::training_rows(data, all, only);
 }
 
 // The plan for a vehicle, with what its files say.
@@ -142,7 +144,8 @@ format::PlannedDrive planned_in_plane(const DriveArguments& options) {
   const study::LearnPlan log = plan_log(options).plan;
   const study::PlanarColumns columns =
       study::planar_columns(log.data, log.settings.shared.states, options.thrusters);
-  const PlanarRows rows = study::planar_rows(log.data, all_rows(log.data), columns);
+  const PlanarRows rows =
+      study::planar_rows(log.data, rows_of_vehicle(log.data, options.only), columns);
   const ExpectedPlanarFit expected =
       study::of_log(log.data, [&] { return ExpectedPlanarFit(rows); });
   const Alignment& alignment = log.alignment.alignment;
@@ -168,8 +171,8 @@ format::PlannedDrive planned_on_six_axes(const DriveArguments& options,
     throw InputError("--vehicle", "is of six axes, and the log has " + why);
   }
   const log::Dataset& data = log->plan.data;
-  const SixAxisRows rows =
-      study::six_axis_rows(data, all_rows(data), log->columns, file, log->frame, log->neutral);
+  const SixAxisRows rows = study::six_axis_rows(data, rows_of_vehicle(data, options.only),
+                                                log->columns, file, log->frame, log->neutral);
   const ExpectedSixAxisFit expected =
       study::of_log(data, [&] { return ExpectedSixAxisFit(rows, log->how); });
   DrivenThrusters thrusters{{}, rows.commands, [&](std::size_t thruster, double command) {
@@ -217,11 +220,11 @@ void run_plan(const DriveArguments& given) {
   if (!options.apart.empty() && !options.tell.empty()) {
     throw InputError("--apart", "and --tell are two aims: give one");
   }
-  const format::PlannedDrive drive = planned(options);
   const std::vector<std::string> names{kSetpoints, kNumbers, kPlanPage, kScript};
   std::vector<std::string> inputs = options.files();
   inputs.push_back(options.six.vehicle);
   const file::OutFolder out = take_out_folder(options.out, names, inputs);
+  const format::PlannedDrive drive = planned(options);
   file::FileSet files{{kSetpoints, format::drive_csv(drive)},
                       {kNumbers, format::drive_json(drive)},
                       {kPlanPage, report::drive_html(drive)},

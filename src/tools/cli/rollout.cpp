@@ -165,7 +165,7 @@ void write_judgement(const RolloutArguments& options, const study::OpenLoopResul
                 .document = *files["result.json"],
                 .files = {{"result", (folder / "result.json").string()},
                           {"report", (folder / "report.html").string()}},
-                .next = {fmt::format("kelpie export {} --c model.c", options.model)}};
+                .next = {fmt::format("kelpie export {} --c model.c", shell_word(options.model))}};
   if (files["example.csv"]) {
     answer.files.emplace_back("example", (folder / "example.csv").string());
   }
@@ -190,6 +190,22 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
     }
   }
   return velocities;
+}
+
+// Options that judge have nothing to do where commands are followed.
+void refuse_judging(const RolloutArguments& options) {
+  const RolloutArguments usual;
+  const std::pair<const char*, bool> given[]{{"--horizons", options.horizons != usual.horizons},
+                                             {"--split", options.split != usual.split},
+                                             {"--seed", options.seed != usual.seed},
+                                             {"--current", options.current != kUsualCurrent},
+                                             {"--verbose", options.answer.verbose},
+                                             {"--json", options.answer.json}};
+  for (const auto& [option, is_given] : given) {
+    require(!is_given, option,
+            "belongs to the judgement of a log; with --start the log holds commands, and "
+            "rollout.csv has what comes of them");
+  }
 }
 
 void roll_commands(const RolloutArguments& options, const TrainedModel& model,
@@ -218,6 +234,9 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
 
 void rollout(const RolloutArguments& options) {
   options.answer.begin();
+  if (!options.start.empty()) {
+    refuse_judging(options);
+  }
   constexpr std::size_t kMostHorizons = 100;
   require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
   format::ModelInfo info;

@@ -18,6 +18,7 @@
 #include "cli/progress.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
+#include "file/toml.hpp"
 #include "format/settings_file.hpp"
 #include "format/tune_json.hpp"
 #include "jobs/make_executor.hpp"
@@ -158,8 +159,27 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
   return study::tune(problem, tuning, journal, executor);
 }
 
+// The logs and options of a `learn` with what was found: by the file `tuned`, or by --set where the
+// [log] of --config is needed.
+std::string learn_text(const TuneArguments& options, const ModelSettings& base,
+                       const study::TuneResult& result, const std::string& tuned) {
+  PlanOptions again = options;
+  if (options.config.empty() || !file::TomlNode::read(options.config).has("log")) {
+    again.set.clear();  // the file has them
+    return again.text(tuned);
+  }
+  const auto before = base.values();
+  for (const auto& value : result.tuned.values()) {
+    if (std::ranges::count(before, value) == 0) {
+      again.set.push_back(value.first + "=" + value.second);
+    }
+  }
+  return again.text(options.config);
+}
+
 void write_tuned(const TuneArguments& options, const std::string& logs_text,
-                 const study::TuneResult& result, const study::TuneJournal::Header& header) {
+                 const ModelSettings& base, const study::TuneResult& result,
+                 const study::TuneJournal::Header& header) {
   const std::filesystem::path folder = options.out;
   const std::string document = format::tune_json(result, header);
   file::write_files_whole(folder, {{"tuned.toml", report::tuned_toml(result, header)},
@@ -172,7 +192,7 @@ void write_tuned(const TuneArguments& options, const std::string& logs_text,
         .files = {{"tuned", tuned},
                   {"result", (folder / "tune.json").string()},
                   {"report", (folder / "tune.html").string()}},
-        .next = {fmt::format("kelpie learn {}", options.text(tuned))}},
+        .next = {fmt::format("kelpie learn {}", learn_text(options, base, result, tuned))}},
        options.answer);
 }
 
@@ -197,7 +217,7 @@ void run_tune(const TuneArguments& options) {
   const study::TuneJournal::Header header = study::journal_header(problem, tuning);
   study::TuneJournal journal(journal_file(options), header);
   const study::TuneResult result = search(options, problem, tuning, journal, *executor);
-  write_tuned(options, logs_text, result, header);
+  write_tuned(options, logs_text, problem.base, result, header);
 }
 
 }  // namespace
@@ -213,7 +233,7 @@ void add_tune(CLI::App& app) {
   add_split_option(*command, options->split, "whose held-out rows stay untouched (see `learn`)");
   add_since_option(*command, options->since_s);
   add_align_option(*command, options->align);
-  add_current_option(*command, options->current);
+  add_current_option(*command, *options);
   add_accept_option(*command, options->accept);
   command->add_option("--only", options->only,
                       "number of the configuration to tune on; else the first in each log");

@@ -199,7 +199,7 @@ std::string model_description(const Vehicle& vehicle, const std::string& guid,
   return xml.CStr();
 }
 
-void write_fmu(const fs::path& fmu, const TrainedModel& model, const FmuOptions& options) {
+std::string fmu_content(const TrainedModel& model, const FmuOptions& options) {
   const std::string text = format::model_json(model);
   const std::string description = model_description(Vehicle(model), guid_of(text), options);
   const std::string shared_object =
@@ -209,7 +209,11 @@ void write_fmu(const fs::path& fmu, const TrainedModel& model, const FmuOptions&
   archive.add("modelDescription.xml", description);
   archive.add("resources/model.json", text);
   archive.add(fmt::format("binaries/{}/{}.so", kPlatform, kModelIdentifier), shared_object);
-  file::write_file_whole(fmu, archive.bytes());
+  return archive.bytes();
+}
+
+void write_fmu(const fs::path& fmu, const TrainedModel& model, const FmuOptions& options) {
+  file::write_file_whole(fmu, fmu_content(model, options));
 }
 
 }  // namespace kelpie::fmu

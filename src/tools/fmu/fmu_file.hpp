@@ -22,10 +22,12 @@ struct FmuOptions {
 std::string model_description(const Vehicle& vehicle, const std::string& guid,
                               const FmuOptions& options);
 
-/// Writes an .fmu, whole or not at all: modelDescription.xml, the model as resources/model.json,
-/// and the shared object of this kelpie for this machine, under the standard's names. Throws
-/// InputError as Vehicle and model_description(), Failure where the shared object is missing or the
-/// file can't be written.
+/// The content of an .fmu: modelDescription.xml, the model as resources/model.json, and the shared
+/// object of this kelpie for this machine, under the standard's names. Throws InputError as Vehicle
+/// and model_description(), Failure where the shared object is missing.
+std::string fmu_content(const TrainedModel& model, const FmuOptions& options);
+
+/// Writes fmu_content(), whole or not at all. Throws Failure where the file can't be written.
 void write_fmu(const std::filesystem::path& fmu, const TrainedModel& model,
                const FmuOptions& options);
 

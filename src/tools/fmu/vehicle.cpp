@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kPose{"position_x", "position_y", "heading"};
 constexpr std::array<std::size_t, 3> kPlanarAxes{0, 1, 5};  // surge, sway, yaw rate
+constexpr double kShortestS = 0.0005;  // between commands that an actuator takes, two at a time
 
 // Every predicted change of velocity counts: in a simulation that goes on for hours, a velocity
 // held would never answer a command.
@@ -49,7 +51,7 @@ Vehicle::Vehicle(TrainedModel model)
     const auto input = std::ranges::find(model_->input_names, alignment.commands[k]);
     if (!actuator.none() && input != model_->input_names.end()) {
       const auto place = static_cast<std::size_t>(input - model_->input_names.begin());
-      driven_.push_back({place, ActuatorState(actuator, 1.0 / kStepS)});
+      driven_.push_back({.input = place, .actuator = ActuatorState(actuator, 1.0 / kShortestS)});
       variables_[place].start = actuator.neutral;
     }
   }
@@ -91,6 +93,7 @@ void Vehicle::start(double t) {
   t_ = t;
   for (Driven& driven : driven_) {
     driven.actuator.rest();
+    driven.taken_s = -std::numeric_limits<double>::infinity();
   }
   take_effects(t_);
   rollout_.start(x_);
@@ -115,12 +118,19 @@ void Vehicle::advance(double dt_s) {
   predict();
 }
 
-// The inputs of the model at the time t: every command behind its actuator.
+// The inputs of the model at the time t: every command behind its actuator. Commands of shorter
+// steps than kShortestS are passed over: an actuator keeps a limited number for its delay.
 void Vehicle::take_effects(double t) {
   std::copy_n(values_.begin(), x_.size(), x_.begin());
-  for (auto& [input, actuator] : driven_) {
-    if (std::isfinite(values_[input])) {
-      x_[input] = actuator.next(values_[input], t);
+  for (Driven& driven : driven_) {
+    const double command = values_[driven.input];
+    const bool is_soon = t > driven.taken_s && t - driven.taken_s < kShortestS;
+    if (std::isfinite(command) && !is_soon) {
+      driven.effect = driven.actuator.next(command, t);
+      driven.taken_s = t;
+    }
+    if (std::isfinite(command)) {
+      x_[driven.input] = driven.effect;
     }
   }
 }

@@ -79,6 +79,8 @@ class Vehicle {
   struct Driven {
     std::size_t input;
     ActuatorState actuator;
+    double taken_s = 0.0;  ///< when the actuator took its last command
+    double effect = 0.0;
   };
   std::vector<Driven> driven_;  ///< commands with an actuator that takes time
   struct Pose {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "file/json.hpp"
 #include "kelpie/core/setting.hpp"
@@ -14,8 +15,13 @@ namespace {
 
 constexpr double kLeastRest = 1400.0;  // µs, of a pulse at rest
 constexpr double kMostRest = 1600.0;
-constexpr int kMotorFunction = 32;  // SERVOn_FUNCTION of motor 1, less 1
-constexpr int kHoldMs = 300;        // of an output without a further command
+constexpr int kHoldMs = 300;  // of an output without a further command
+
+// SERVOn_FUNCTION of ArduPilot's motors: motor 1 has 33, motor 9 has 82.
+constexpr int kLastMotor = 12;
+constexpr int motor_function(int motor) {
+  return motor <= 8 ? 32 + motor : 73 + motor;
+}
 
 // The digits at the end of a name, or those before "_raw": 0 without.
 int motor_number(const std::string& name) {
@@ -111,9 +117,12 @@ std::string drive_json(const PlannedDrive& drive) {
 }
 
 bool has_pulses(const PlannedDrive& drive) {
+  std::set<int> motors;
   for (std::size_t i = 0; i < drive.thrusters.size(); ++i) {
     const double rest = drive.command(i, 0.0);
-    if (rest < kLeastRest || rest > kMostRest || motor_number(drive.thrusters[i]) == 0) {
+    const int motor = motor_number(drive.thrusters[i]);
+    if (rest < kLeastRest || rest > kMostRest || motor == 0 || motor > kLastMotor ||
+        !motors.insert(motor).second) {
       return false;
     }
   }
@@ -128,7 +137,7 @@ std::string drive_lua(const PlannedDrive& drive) {
       "local functions = {{",
       drive.plan.duration_s(), drive.bounds.radius_m);
   for (const std::string& thruster : drive.thrusters) {
-    text += fmt::format("{}, ", kMotorFunction + motor_number(thruster));
+    text += fmt::format("{}, ", motor_function(motor_number(thruster)));
   }
   text += "} -- SERVOn_FUNCTION\nlocal setpoints = { -- ms, then a pulse in us for each\n";
   each_setpoint(drive, [&](double t, const std::vector<double>& commands) {

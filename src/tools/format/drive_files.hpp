@@ -30,7 +30,8 @@ std::string drive_csv(const PlannedDrive& drive);
 /// Bounds, countdown and manoeuvres. Ends in a newline.
 std::string drive_json(const PlannedDrive& drive);
 
-/// Whether commands are pulses that rest near 1500 µs and names end in a motor's number.
+/// Whether commands are pulses that rest near 1500 µs and names end in the numbers of different
+/// motors, 1 to 12.
 bool has_pulses(const PlannedDrive& drive);
 
 /// A Lua script for ArduSub that holds the pulses on the outputs of the motors, begins when the

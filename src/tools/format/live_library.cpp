@@ -52,19 +52,39 @@ int run(std::vector<std::string> words) {
   return status;
 }
 
-void compile(const LiveFiles& files) {
-  const char* const named = std::getenv("CC");  // NOLINT(concurrency-mt-unsafe): before threads
-  const std::filesystem::path draft = files.library.string() + ".draft";
-  const std::string compiler = named != nullptr && *named != '\0' ? named : "cc";
-  const int status = run({compiler, "-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
-                          draft.string(), files.source.string(), "-lm"});
-  if (status != 0) {
-    std::error_code ignored;
-    std::filesystem::remove(draft, ignored);
-    throw Failure("the C compiler '" + compiler + "' could not compile " + files.source.string());
+// A library compiled beside its place, and removed unless it was renamed.
+class LibraryDraft {
+ public:
+  LibraryDraft(const LiveFiles& files, const std::string& source)
+      : source_(files.library.string() + ".draft.c"), library_(files.library.string() + ".draft") {
+    file::write_file_whole(source_, source);
+    const char* const named = std::getenv("CC");  // NOLINT(concurrency-mt-unsafe): before threads
+    const std::string compiler = named != nullptr && *named != '\0' ? named : "cc";
+    const int status = run({compiler, "-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
+                            library_.string(), source_.string(), "-lm"});
+    if (status != 0) {
+      remove();
+      throw Failure("the C compiler '" + compiler + "' could not compile " + files.source.string());
+    }
   }
-  std::filesystem::rename(draft, files.library);
-}
+  ~LibraryDraft() { remove(); }
+  LibraryDraft(const LibraryDraft&) = delete;
+  LibraryDraft& operator=(const LibraryDraft&) = delete;
+
+  void rename_to(const std::filesystem::path& library) {
+    std::filesystem::rename(library_, library);
+  }
+
+ private:
+  void remove() const {
+    std::error_code ignored;
+    std::filesystem::remove(source_, ignored);
+    std::filesystem::remove(library_, ignored);
+  }
+
+  std::filesystem::path source_;
+  std::filesystem::path library_;
+};
 
 }  // namespace
 
@@ -92,9 +112,10 @@ void write_live_library(const LiveFiles& files, const TrainedModel& model, CodeO
   options.live = {.file = std::filesystem::absolute(files.block).string(),
                   .layout = live_layout(model, options.assess)};
   const std::string source = model_c(model, options);
+  LibraryDraft draft(files, source);
   file::write_file_whole(files.block, block_content(model, options.live->layout));
   file::write_file_whole(files.source, source);
-  compile(files);
+  draft.rename_to(files.library);
 }
 
 }  // namespace kelpie::format

@@ -152,7 +152,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
       quantity.name + " from episode to episode");
   figure.band(points, halves, 0, "90 % interval");
   figure.markers(points, 0, "estimate");
-  if (change.course.kind != CourseKind::unknown) {
+  if (change.course.kind != CourseKind::unknown && change.course.kind != CourseKind::undecided) {
     figure.line(course, 1, "course");
   }
   for (std::size_t i = 1; i < card.baselines.size(); ++i) {

@@ -39,15 +39,17 @@ std::optional<double> last_change_s(const study::StreamResult& result) {
 
 }  // namespace
 
-std::vector<NextStep> after_learning(const study::StreamResult& result, const std::string& log,
+std::vector<NextStep> after_learning(const study::StreamResult& result, const LogWords& log,
                                      const std::string& model) {
   std::vector<NextStep> next;
-  if (const std::optional<double> since_s = last_change_s(result)) {
-    next.push_back({fmt::format("kelpie learn {} --since {:.12g} --out out/since", log, *since_s),
+  const std::optional<double> since_s = last_change_s(result);
+  if (since_s && log.learning) {
+    next.push_back({fmt::format("kelpie learn {} --since {:.12g} --out out/since{}", log.file,
+                                *since_s, *log.learning),
                     "the changed vehicle alone: compare R²"});
   }
-  next.push_back(
-      {"kelpie rollout " + log + " --model " + model, "how the error grows in open loop"});
+  next.push_back({"kelpie rollout " + log.file + log.judging + " --model " + model,
+                  "how the error grows in open loop"});
   next.push_back({"kelpie predict LOG --model " + model, "predictions for another log"});
   next.push_back({"kelpie learn LOG --from " + model, "goes on with another log of the vehicle"});
   return next;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,17 @@ struct NextStep {
   std::string purpose;
 };
 
-/// The commands after `kelpie learn`, of a log and the path of its model; first, where the vehicle
-/// changed and kTuning.rows_since or more rows follow, the command that learns these rows alone;
-/// not where a thruster is back at its nominal thrust.
-std::vector<NextStep> after_learning(const study::StreamResult& result, const std::string& log,
+/// A log as the next commands take it; options begin with a blank.
+struct LogWords {
+  std::string file{};
+  std::optional<std::string> learning{};  ///< options of `learn`; none: not to be learned anew
+  std::string judging{};                  ///< options of a command that judges a model
+};
+
+/// The commands after `kelpie learn`, with the path of the model; first, where the vehicle changed
+/// and kTuning.rows_since or more rows follow, the command that learns these rows alone; not where
+/// a thruster is back at its nominal thrust.
+std::vector<NextStep> after_learning(const study::StreamResult& result, const LogWords& log,
                                      const std::string& model);
 
 /// The commands after a model of no use: of the log's file, and of the log with its options.

@@ -77,7 +77,7 @@ double first_row(const study::AxisResult& axis, double before_s,
   return first;
 }
 
-// Root mean square over the rows of a window, wild values bounded.
+// Standard deviation over the rows of a window, wild values bounded.
 double motion_in(const study::OneStep& steps, chart::Extent usual, std::size_t begin,
                  std::size_t end) {
   double sum = 0.0;

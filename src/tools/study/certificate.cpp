@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "study/metrics.hpp"
+#include "study/open_loop_study.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -97,12 +98,9 @@ std::vector<DrivenHorizon> driven_horizons(const EngineRun& run, const RecordedD
   std::vector<Pairs> pairs(study.horizons_s.size());
   for (std::size_t stretch = 0; stretch < drive.starts.size(); ++stretch) {
     const std::size_t end = drive.end_of(stretch);
-    double next = -std::numeric_limits<double>::infinity();
-    for (std::size_t row = drive.starts[stretch]; row + 1 < end; ++row) {
-      if (drive.times_s[row] >= next) {
-        next = drive.times_s[row] + study.start_every_s;
-        drive_from(run, drive, row, end, study, pairs);
-      }
+    for (const std::size_t row :
+         starts_in(drive.times_s, {drive.starts[stretch], end}, study.start_every_s)) {
+      drive_from(run, drive, row, end, study, pairs);
     }
   }
   std::vector<DrivenHorizon> horizons;

@@ -257,13 +257,15 @@ void give_scale(const KnownThrust& known, Identification& found) {
 }
 
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
-                        const KnownThrust& known, std::optional<int> only) {
+                        const KnownThrust& known, std::optional<int> only, bool accepts) {
   const std::vector<std::size_t> training = training_rows(data, split, only);
   const int wanted = data.configurations[training.front()];
   Identification found = identification_of(data, split, training.size());
   const PlanarRows rows = planar_rows(data, training, columns);
   if (data.poses.empty()) {
-    require_accelerations(data, columns, rows, training);
+    if (!accepts) {
+      require_accelerations(data, columns, rows, training);
+    }
     found.planar = of_log(data, [&] { return fit_planar(rows); });
   } else {
     const PoseRows poses = pose_rows(data, training, columns, rows);

@@ -92,10 +92,10 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
 
 /// Identifies on the training rows of the configuration `only` (default: the first), and scores on
 /// its held-out rows; from poses, where the log has poses (fit_poses()), without a score. Throws
-/// InputError on targets that aren't accelerations of the velocities and on an impossible scale;
-/// also throws what fit_planar() throws.
+/// InputError on targets that aren't accelerations of the velocities, unless it `accepts` them, and
+/// on an impossible scale; also throws what fit_planar() throws.
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
-                        const KnownThrust& known, std::optional<int> only);
+                        const KnownThrust& known, std::optional<int> only, bool accepts = false);
 
 /// The head of an identification: log, split and number of training rows.
 Identification identification_of(const log::Dataset& data, const Split& split,

@@ -137,7 +137,8 @@ std::vector<ReckoningScore> reckon(const OpenLoop& model, const log::Dataset& da
   for (const double seconds : study.outages_s) {
     std::vector<double> errors;
     for (const Stretch& stretch : stretches) {
-      for (const std::size_t start : starts_in(data, stretch, std::max(0.5 * seconds, 1.0))) {
+      for (const std::size_t start :
+           starts_in(data.times_s, stretch, std::max(0.5 * seconds, 1.0))) {
         const std::size_t end = row_after(data, stretch, start, seconds);
         if (end < stretch.end) {
           errors.push_back(reckoning_error(rollout, model.states, data, start, end));
@@ -225,14 +226,14 @@ double largest_jump(const log::Dataset& data, std::size_t state, std::size_t axi
 
 }  // namespace
 
-std::vector<std::size_t> starts_in(const log::Dataset& data, const Stretch& stretch,
+std::vector<std::size_t> starts_in(std::span<const double> times_s, const Stretch& stretch,
                                    double every_s) {
   std::vector<std::size_t> starts;
   double next_s = -std::numeric_limits<double>::infinity();
   for (std::size_t row = stretch.begin; row + 1 < stretch.end; ++row) {
-    if (data.times_s[row] >= next_s) {
+    if (times_s[row] >= next_s) {
       starts.push_back(row);
-      next_s = data.times_s[row] + every_s * (1.0 - 1e-9);
+      next_s = times_s[row] + every_s * (1.0 - 1e-9);
     }
   }
   return starts;
@@ -287,7 +288,7 @@ OpenLoopScore score_open_loop(const std::string& name, const OpenLoop& model,
                               const OpenLoopStudy& study) {
   Horizons horizons(model, data, study);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
-    for (const std::size_t start : starts_in(data, stretches[i], study.start_every_s)) {
+    for (const std::size_t start : starts_in(data.times_s, stretches[i], study.start_every_s)) {
       horizons.run(stretches[i], start);
     }
     if (study.keep_going &&
@@ -362,7 +363,8 @@ void add_example(OpenLoopResult& result, const OpenLoop& loop, const log::Datase
   }
   double most = 0.0;
   for (const Stretch& stretch : stretches) {
-    for (const std::size_t begin : starts_in(data, stretch, kTuning.open_loop.example_every_s)) {
+    for (const std::size_t begin :
+         starts_in(data.times_s, stretch, kTuning.open_loop.example_every_s)) {
       const std::size_t end = row_after(data, stretch, begin, longest_s);
       const double lively = end < stretch.end ? liveliness(loop, data, begin, end) : 0.0;
       if (lively > most) {

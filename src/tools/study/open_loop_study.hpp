@@ -29,8 +29,9 @@ struct Stretch {
 std::vector<Stretch> unbroken_stretches(const log::Dataset& data, std::span<const std::size_t> rows,
                                         std::span<const std::size_t> states);
 
-/// The start rows of rollouts in a stretch: the first row, then a row every `every_s` seconds.
-std::vector<std::size_t> starts_in(const log::Dataset& data, const Stretch& stretch,
+/// The start rows of rollouts in a stretch of rows at `times_s`: the first row, then a row every
+/// `every_s` seconds.
+std::vector<std::size_t> starts_in(std::span<const double> times_s, const Stretch& stretch,
                                    double every_s);
 
 /// The first row at least `seconds` after the start; the end of the stretch without such a row.

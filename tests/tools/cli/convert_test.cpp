@@ -79,6 +79,8 @@ TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
       {" --columns /cmd:linear.x --out x.txt", "a name ending in .csv or .mcap"},
       {" --columns /cmd:linaer.x --out x.csv", "did you mean 'linear.x'?"},
       {" --columns /cmd:linear.x --clock header --out x.csv", "has no header"},
+      {" --clock header --out x.mcap", "--clock: is of the rows of --columns"},
+      {" --clock header --config c.toml --out x.csv", "--clock: is of the rows of --columns"},
       {" --columns /cmd:linear.x --msg-dir none --out x.csv", "none: is not a folder"},
   };
   for (const auto& [arguments, message] : cases) {

@@ -44,6 +44,45 @@ TEST_F(Export, WritesACFileAndRefusesWhatCannotBeOne) {
   EXPECT_NE(content("model.c").find("kelpie_model_predict(const float x[2]"), std::string::npos);
 }
 
+TEST_F(Export, WritesEveryFileOrNone) {
+  write("log.csv", little_log(600));
+  testing::succeeded(run("learn log.csv --out out"));
+  const std::string model = "export out/model.json ";
+  testing::expect_refused(run(model + "--c out.c --header ./out.c"), "--header");
+  EXPECT_FALSE(exists("out.c"));
+  testing::expect_refused(run(model + "--fmu a.fmu --float"), "--float: needs --c FILE");
+  testing::expect_refused(run(model + "--fmu a.fmu --assess"), "--assess: needs --c FILE");
+  testing::expect_refused(run(model + "--fmu a.fmu --casadi"), "--casadi: needs --c FILE");
+  EXPECT_FALSE(exists("a.fmu"));
+
+  testing::succeeded(run(model + "--live twin.so"));
+  const std::string block = content("twin.block");
+  const std::string source = content("twin.c");
+  testing::succeeded(run("learn log.csv --set buffer=20 --out other"));
+  ::setenv("CC", "false", 1);  // NOLINT(concurrency-mt-unsafe): one thread
+  const Outcome without = run("export other/model.json --live twin.so --c all.c");
+  ::unsetenv("CC");  // NOLINT(concurrency-mt-unsafe): one thread
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_EQ(content("twin.block"), block);
+  EXPECT_EQ(content("twin.c"), source);
+  EXPECT_FALSE(exists("all.c"));
+  EXPECT_FALSE(exists("twin.so.draft.c"));
+
+  testing::succeeded(run("learn log.csv --inputs n --targets udot --out still"));
+  testing::expect_refused(run("export still/model.json --c still.c --fmu still.fmu"),
+                          "cannot be rolled out");
+  EXPECT_FALSE(exists("still.c"));
+}
+
+TEST_F(Export, KeepsTheUnitsOfTheModel) {
+  write("log.csv", little_log(600));
+  testing::succeeded(run("learn log.csv --units u=m/s,udot=m/s^2 --out out"));
+  testing::succeeded(run("export out/model.json --c model.c --units n=rev/s"));
+  const std::string code = content("model.c");
+  EXPECT_NE(code.find("_target_units[1] = {\"m s^-2\"};"), std::string::npos) << code;
+  EXPECT_NE(code.find("_input_units[2] = {\"m s^-1\", \"rev s^-1\"};"), std::string::npos) << code;
+}
+
 TEST_F(Export, WritesAUnitOfFmi) {
   write("log.csv", little_log(2400));
   testing::succeeded(run("learn log.csv --out out"));

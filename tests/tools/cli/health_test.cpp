@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "cli/command.hpp"
+#include "kelpie/core/random.hpp"
 #include "support.hpp"
 
 namespace kelpie::health_test {
@@ -80,6 +83,60 @@ TEST_F(Health, RefusesWhatIsNoDateNoLogAndNoColumn) {
   expect_nothing_written("health dive.csv --volts nothing", "nothing");
   expect_nothing_written("health dive.csv --glider pitch=p", "needs pitch, ballast and depth");
   expect_nothing_written("health dive.csv --glider wing=p", "is no NAME=COLUMN");
+}
+
+TEST_F(Health, ChecksEveryLogAndNotTheFirstAlone) {
+  dive("a.csv", 1, 1.0);
+  dive("b.csv", 2, 1.0);
+  const std::string text = content("b.csv");
+  std::string stamps = text.substr(0, text.find('\n') + 1);
+  std::size_t row = 0;
+  for (std::size_t at = stamps.size(); at < text.size(); ++row) {  // two rows for every stamp
+    const std::size_t end = text.find('\n', at) + 1;
+    const std::size_t comma = text.find(',', at);
+    stamps += fmt::format("{}", 0.5 * static_cast<double>(row / 2));
+    stamps += text.substr(comma, end - comma);
+    at = end;
+  }
+  write("b.csv", stamps);
+  expect_nothing_written("health a.csv b.csv --align none",
+                         "have the time stamp of the row before");
+  succeeded(run("health a.csv b.csv --align none --accept implausible --out out"));
+}
+
+// A glider that goes down and up, a row every 5 s.
+std::string glides() {
+  RandomStream random(1, "glider");
+  std::string text = "time,p,b,d,w\n";
+  double t = 0.0;
+  double depth = 0.0;
+  for (int part = 0; part < 24; ++part) {
+    const double up = part % 2 == 0 ? -1.0 : 1.0;
+    const double pitch = up * (0.35 + 0.03 * (part / 2 % 4));
+    const double ballast = up * (200.0 + 20.0 * (part / 2 % 3));
+    do {
+      const double speed =
+          0.3 * std::sqrt(std::abs(ballast) / 200.0 * std::abs(std::sin(pitch)) / 0.35);
+      const double sinking = -speed * std::sin(pitch) + 0.003 * random.normal();
+      text += fmt::format("{},{},{},{},{}\n", t, pitch + 0.005 * random.normal(), ballast, depth,
+                          sinking);
+      t += 5.0;
+      depth += 5.0 * sinking;
+    } while (up < 0.0 ? depth < 100.0 : depth > 1.0);
+  }
+  return text;
+}
+
+TEST_F(Health, TwoLogsOfOneNameLoseNoGlides) {
+  for (const char* const folder : {"a", "b"}) {
+    std::filesystem::create_directory(folder_ / folder);
+    write(std::string(folder) + "/dive.csv", glides());
+  }
+  const std::string how = " --glider pitch=p,ballast=b,depth=d,sinking=w --glide-csv";
+  expect_nothing_written("health a/dive.csv b/dive.csv" + how, "to one file, dive_glide.csv");
+  succeeded(run("health '{vehicle}/{mission}.csv' --out out" + how));
+  EXPECT_TRUE(exists("out/a_dive_glide.csv"));
+  EXPECT_TRUE(exists("out/b_dive_glide.csv"));
 }
 
 // A log that is too short for a factor says so in place of a number.

@@ -61,6 +61,17 @@ TEST_F(Help, EndsWithTwoExamplesAndFitsTheTerminal) {
   }
 }
 
+// The files of the examples are not here, but their options are.
+TEST_F(Help, HasExamplesThatParse) {
+  for (const std::string& command : commands()) {
+    for (const std::string& example : matches(help(command + " --help"), "\n  kelpie ([^\n]+)")) {
+      const std::string said =
+          shell(folder_, "HOME=$PWD timeout 5 " KELPIE_COMMAND " " + example + " | head -c 100000");
+      EXPECT_EQ(said.find("Run with --help"), std::string::npos) << example << "\n" << said;
+    }
+  }
+}
+
 TEST_F(Help, IsWhatACommandWithNothingToDoSays) {
   for (const auto& [words, usage] :
        {std::pair{"", "Usage: kelpie [OPTIONS] SUBCOMMAND"},

@@ -49,7 +49,7 @@ class Identify : public testing::CommandTest {
   void simulate(const std::string& vehicle, const std::string& noise,
                 const std::string& log) const {
     write("scenario.toml", scenario(vehicle, noise));
-    const Outcome outcome = run("simulate scenario.toml --out " + log);
+    const Outcome outcome = run("simulate scenario.toml --out '" + log + "'");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
@@ -131,6 +131,67 @@ TEST_F(Identify, SixAxesWhereTheVehicleFileHasTheLogsThrusters) {
   other.replace(other.find("nominal_v = 16.0"), 16, "nominal_v = 1600.0");
   write("other.toml", other);
   expect_refused("heavy.csv --vehicle other.toml --volts voltage", "voltage is 1600 V");
+}
+
+// A log with a column in degrees in place of radians.
+std::string in_degrees(const std::string& csv, const std::string& wanted) {
+  const std::string head = csv.substr(0, csv.find('\n') + 1);
+  std::istringstream names(head);
+  std::size_t place = 0;
+  for (std::string name; std::getline(names, name, ',');) {
+    if (name == wanted || name.starts_with("\"" + wanted + " [")) {
+      break;
+    }
+    ++place;
+  }
+  std::string text = head;
+  for (const std::vector<double>& row : rows_of(csv)) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      text += (column > 0 ? "," : "") +
+              std::to_string((column == place ? 180.0 / M_PI : 1.0) * row[column]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(Identify, UnitsAreCheckedOnSixAxesAndInThePlaneAndMayBeAccepted) {
+  write("heavy.toml", "vehicle = \"" + kHeavy +
+                          "\"\nrate_hz = 20.0\nlog = \"six_axes\"\nnoise = \"as_recorded\"\n"
+                          "[excitation]\nmode = \"pilot\"\nperiod_s = [1.0, 6.0]\n"
+                          "effort = [50, 50, 40, 6, 6, 4]\ndither = 0.1\n[[configurations]]\n"
+                          "name = \"nominal\"\n[[phases]]\nconfiguration = \"nominal\"\n"
+                          "duration_s = 120.0\n");
+  testing::succeeded(run("simulate heavy.toml --out heavy.csv"));
+  write("heavy.csv", in_degrees(content("heavy.csv"), "r"));
+  const std::string six = "heavy.csv --vehicle " + kHeavy;
+  expect_refused(six, "r is in degrees per second");
+  testing::expect_refused(run("plan " + six + " --out refused"), "r is in degrees per second");
+  testing::succeeded(run("identify " + six + " --units r=deg/s --out out"));
+
+  simulate(kDagon, "as_recorded", "log.csv");
+  write("log.csv", in_degrees(content("log.csv"), "rdot"));
+  const std::string message = "rdot is in degrees per second squared";
+  testing::expect_refused(run("plan log.csv --out refused"), message);
+  expect_refused("log.csv", message);
+  testing::succeeded(run("identify log.csv --accept implausible --out out"));
+}
+
+TEST_F(Identify, TheNextCommandHasEveryOptionOfThisOne) {
+  simulate(kDagon, "as_recorded", "a log.csv");
+  const std::string given =
+      "--inputs u,v,r,th1,th2,th3 --targets udot,vdot,rdot --align none "
+      "--only 0 --frame FRD --for kelpie";
+  const Outcome outcome = testing::succeeded(run("identify 'a log.csv' --out out " + given));
+  const std::size_t at = outcome.out.find("kelpie identify 'a log.csv' ");
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  const std::string next = outcome.out.substr(at + 7, outcome.out.find(" --mass", at) - at - 7);
+  for (const char* const option : {"--inputs u,v,r,th1,th2,th3", "--targets udot,vdot,rdot",
+                                   "--align none", "--only 0", "--frame FRD", "--for kelpie"}) {
+    EXPECT_NE(next.find(option), std::string::npos) << option << "\n" << next;
+  }
+  testing::succeeded(run(next + " --mass 70 --out again"));
+  EXPECT_TRUE(exists("again/vehicle.toml"));
 }
 
 // The log with the commands that rotors with a time constant of 1 s would have needed.

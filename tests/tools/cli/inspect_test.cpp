@@ -43,6 +43,11 @@ TEST_F(Inspect, ADamagedBagIsRefusedOrRecoveredWithALossOnStderr) {
   EXPECT_GT(parsed("report.json").at("loss_count"), 0);
 }
 
+TEST_F(Inspect, WritesTwoFilesOfTwoNames) {
+  testing::expect_refused(run("inspect " + kBag + " --json x --template ./x"), "--template");
+  EXPECT_FALSE(exists("x"));
+}
+
 TEST_F(Inspect, DoesNotReplaceItsBag) {
   const std::string bag = content_of(kBag);
   std::filesystem::create_directory(folder_ / "mission");

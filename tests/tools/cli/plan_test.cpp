@@ -133,6 +133,41 @@ TEST_F(Plan, SixAxesWithAVehicleFile) {
                           "'wings' is no parameter");
 }
 
+// A vehicle with another load is another vehicle: the plan is of the first, or of --only.
+TEST_F(Plan, IsOfOneConfiguration) {
+  write("scenario.toml", "vehicle = \"" + kDagon +
+                             "\"\nrate_hz = 4.0\nnoise = \"as_recorded\"\n[[configurations]]\n"
+                             "name = \"nominal\"\n[[configurations]]\nname = \"fouled\"\n"
+                             "damping_factor = [4, 4, 4, 4, 4, 4]\n[[phases]]\n"
+                             "configuration = \"nominal\"\nduration_s = 90.0\n[[phases]]\n"
+                             "configuration = \"fouled\"\nduration_s = 90.0\n");
+  testing::succeeded(run("simulate scenario.toml --out both.csv"));
+  const auto plan = [&](const std::string& arguments, const std::string& out) {
+    testing::succeeded(run("plan " + arguments + " --align none --seconds 40 --out " + out));
+    return content(out + "/plan.csv");
+  };
+  const std::string both = content("both.csv");
+  std::size_t end = both.find('\n') + 1;
+  while (both[both.find(',', end) + 1] == '0') {  // behind the time
+    end = both.find('\n', end) + 1;
+  }
+  write("first.csv", both.substr(0, end));
+  const std::string first = plan("first.csv --configuration conf", "first");
+  EXPECT_EQ(plan("both.csv --configuration conf", "both"), first);
+  EXPECT_EQ(plan("both.csv --configuration conf --only 0", "zero"), first);
+  EXPECT_NE(plan("both.csv --configuration conf --only 1", "one"), first);
+  testing::expect_refused(run("plan both.csv --configuration conf --only 7 --out refused"),
+                          "has no configuration 7; it has 0, 1");
+}
+
+TEST_F(Plan, AnOutFolderIsTriedBeforeTheLog) {
+  for (const std::string command : {"plan", "identify", "health"}) {
+    const testing::Outcome outcome = run(command + " missing.csv --out log.csv/out");
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("log.csv/out"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(Plan, MistakesAreRefused) {
   const auto refused = [&](const std::string& arguments, const std::string& message) {
     testing::expect_refused(run("plan log.csv " + arguments + " --out refused"), message);

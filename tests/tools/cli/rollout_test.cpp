@@ -74,6 +74,12 @@ TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
       {"log.csv --horizons 0", "--horizons: '0' has to be a number from 0.001 to 86400"},
       {"log.csv --step -1", "--step: '-1' has to be a number from 0.001 to 60"},
       {"absent.csv", "absent.csv"},
+      {"log.csv --start u=0 --json", "--json: belongs to the judgement of a log"},
+      {"log.csv --start u=0 --verbose", "--verbose: belongs to the judgement of a log"},
+      {"log.csv --start u=0 --horizons 5", "--horizons: belongs to the judgement of a log"},
+      {"log.csv --start u=0 --split tail", "--split: belongs to the judgement of a log"},
+      {"log.csv --start u=0 --seed 3", "--seed: belongs to the judgement of a log"},
+      {"log.csv --start u=0 --current none", "--current: belongs to the judgement of a log"},
   };
   for (const auto& [arguments, words] : cases) {
     const Outcome outcome = rollout(arguments);

@@ -83,6 +83,28 @@ TEST_F(TuneCommand, SaysWhetherThereIsAGainAndWhatToRunNext) {
   EXPECT_EQ(said().find("Searched"), std::string::npos) << said();
 }
 
+// tuned.toml lacks the [log] that the next command needs.
+TEST_F(TuneCommand, TheNextCommandLearnsALogThatItsConfigurationExplains) {
+  write_log("named.csv", "forward,n,slope", 700, 0.5);
+  std::ofstream(folder_ / "c.toml")
+      << "buffer = 60\nc = 0.00001\n[log]\ninputs = [\"forward\", \"n\"]\n"
+         "targets = [\"slope\"]\n";
+  const std::string log = (folder_ / "named.csv").string();
+  const std::string config = (folder_ / "c.toml").string();
+  ASSERT_EQ(run("tune " + log + " --config " + config +
+                " --set warmup=30 learner=svr --candidates 4 --search c=1:100:log --out " +
+                out().string()),
+            0)
+      << said();
+  const std::string begin = "kelpie learn " + log + " --config " + config;
+  const std::size_t at = said().find(begin);
+  ASSERT_NE(at, std::string::npos) << said();
+  const std::string next = said().substr(at + 7, said().find('\n', at) - at - 7);
+  EXPECT_NE(next.find(" --set warmup=30"), std::string::npos) << next;
+  EXPECT_NE(next.find(" --set c="), std::string::npos) << next;
+  EXPECT_EQ(run(next + " --out " + (folder_ / "learned").string()), 0) << said();
+}
+
 TEST_F(TuneCommand, RefusesAJournalOfAnotherSearch) {
   ASSERT_EQ(tune(""), 0) << said();
   EXPECT_EQ(tune("--seed 2"), 2);

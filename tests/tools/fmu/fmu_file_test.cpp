@@ -280,6 +280,28 @@ TEST(Fmu, CommandsGoThroughTheActuators) {
   EXPECT_GT(instance.get(kUdot) - before + 0.3 * instance.get(kSurge), 0.2);
 }
 
+// When a command of a host with this step first moves the vehicle whose propeller is 0.2 s late.
+double seconds_until_it_moves(double step_s) {
+  fmu::Vehicle vehicle(learned_boat(true));
+  vehicle.start(50.0);
+  const double before = vehicle.value(kUdot);
+  for (int step = 0; step * step_s < 0.5; ++step) {
+    vehicle.advance(step_s);  // at rest: every command kept is the same
+  }
+  const double begin = vehicle.time_s();
+  vehicle.set(kThrust2, 0.9);
+  while (std::abs(vehicle.value(kUdot) - before) < 0.05 && vehicle.time_s() < begin + 1.0) {
+    vehicle.advance(step_s);
+  }
+  return vehicle.time_s() - begin;
+}
+
+TEST(Fmu, ADelayIsWholeHoweverQuicklyTheHostSteps) {
+  for (const double step_s : {0.1, 0.05, 0.01, 0.001, 0.0001}) {
+    EXPECT_NEAR(seconds_until_it_moves(step_s), 0.2, 1.5 * step_s + 0.002) << step_s;
+  }
+}
+
 TEST(Fmu, OneLongStepIsManyShortOnes) {
   const Host host(learned_boat(true));
   Instance far(host);

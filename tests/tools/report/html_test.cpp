@@ -106,8 +106,8 @@ TEST(Html, AnInterruptedRunSaysSoBeforeAnyResult) {
 TEST(Html, TheFirstScreenHasTheFindingTheVerdictTheInputsAndWhatIsNext) {
   study::StreamResult result = synthetic::stream_with_terms(2);
   result.commands = {"th1", "th2", "th3"};
-  const std::string page =
-      report::report_html(result, report::after_learning(result, "dive.csv", "out/model.json"));
+  const std::string page = report::report_html(
+      result, report::after_learning(result, {"dive.csv", "", ""}, "out/model.json"));
   expect_sound(page, "first screen");
   EXPECT_NE(
       page.find("<h1 dir=\"auto\">th2 gives 48 % of its thrust (41 to 55 %) since 120 s.</h1>"),

@@ -23,13 +23,22 @@ std::string first_command(const Cause& cause) {
   finding.count = 1;
   finding.causes[0] = cause;
   result.diagnosis.findings = {finding};
-  return report::after_learning(result, "dive.csv", "model.json").front().command;
+  return report::after_learning(result, {"dive.csv", "", ""}, "model.json").front().command;
 }
 
 TEST(NextSteps, AChangedVehicleIsLearnedAlone) {
   const std::string command = "kelpie learn dive.csv --since 100 --out out/since";
   EXPECT_EQ(first_command({CauseKind::thruster, 4, 0.6, 0.55, 0.65}), command);
   EXPECT_EQ(first_command({CauseKind::drag, 0, 1.02, 0.99, 1.05}), command);
+}
+
+TEST(NextSteps, TheLogKeepsItsOptions) {
+  study::StreamResult result = synthetic::stream(2);
+  const auto first = [&](const report::LogWords& log) {
+    return report::after_learning(result, log, "model.json").front().command;
+  };
+  EXPECT_EQ(first({"'a dive.csv'", " --align none", " --rate 4"}),
+            "kelpie rollout 'a dive.csv' --rate 4 --model model.json");
 }
 
 // The rows before the damage are of the same vehicle.

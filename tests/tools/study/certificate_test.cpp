@@ -93,6 +93,22 @@ TEST_F(CertificateOfTheHeavy, ThePluginsAddedMassIsToBlame) {
   EXPECT_TRUE(of("uuv_simulator").limit.stable) << "the filter moves the bound to 5.7 masses";
 }
 
+// 0.4 + 0.2 is above 0.6 in binary: a start after every fourth row all the same.
+TEST_F(CertificateOfTheHeavy, RoundingSkipsNoStart) {
+  const vehicle::Scenario scenario = heavy();
+  study::RecordedDrive drive = drive_of(scenario);
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    drive.times_s[row] = static_cast<double>(row) / 20.0;
+  }
+  const study::CertificateList list =
+      study::certify(vehicle::engines().first(1),
+                     vehicle::engine_body(scenario.vehicle, {true, true, true, true, true, true}),
+                     drive, {.horizons_s = {0.5, 0.75, 1.0}, .start_every_s = 0.2});
+  const std::size_t last = drive.rows() - 21;  // whose rollout of 1 s ends in the log
+  EXPECT_NEAR(static_cast<double>(list.engines.front().horizons[2].starts),
+              static_cast<double>(last / 4 + 1), 1.0);
+}
+
 TEST_F(CertificateOfTheHeavy, TheMeanOfAddedMassesCostsHeave) {
   EXPECT_LT(of("stonefish").horizons[0].r2[2], of("kelpie").horizons[0].r2[2]);
 }
