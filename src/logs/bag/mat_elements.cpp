@@ -113,7 +113,12 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
     if (bytes_each == 0 || names.data.size() % bytes_each != 0) {
       throw InputError("a struct without names of fields");
     }
-    held = count * (names.data.size() / bytes_each);
+    const std::size_t fields = names.data.size() / bytes_each;
+    if (fields > 0 && count > parts.left() / kTag / fields) {
+      throw InputError(fmt::format("{} structs of {} fields, which {} bytes can't hold", count,
+                                   fields, parts.left()));
+    }
+    held = count * fields;
   }
   if (held > parts.left() / kTag) {
     throw InputError(fmt::format("{} elements, which {} bytes can't hold", held, parts.left()));
