@@ -9,11 +9,36 @@
 #include <utility>
 
 #include "bag/topic_columns.hpp"
+#include "bag/tuning.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/tuning.hpp"
+#include "mavlink/definition.hpp"
 
 namespace kelpie::live {
+
+void ParameterMessages::hear(const std::vector<bag::Topic>& topics, const bag::Message& message) {
+  const bag::Topic& topic = topics[message.topic];
+  if (topic.type != "PARAM_VALUE" || topic.encoding != "mavlink") {
+    return;
+  }
+  const mavlink::Field& name = *mavlink::find_definition(topic.type)->find("param_id");
+  const Name key{message.topic, mavlink::text_at(name, message.data)};
+  if (last_.size() < bag::kTuning.most_parameters || last_.contains(key)) {
+    last_[key].assign(message.data.begin(), message.data.end());
+  }
+}
+
+void ParameterMessages::visit(const bag::Message& like,
+                              const std::function<void(const bag::Message&)>& use) const {
+  bag::Message message = like;
+  for (const auto& [name, data] : last_) {
+    message.topic = name.first;
+    message.data = data;
+    use(message);
+  }
+}
+
 Recorder::Recorder(std::filesystem::path folder, const std::filesystem::path& definitions)
     : folder_(std::move(folder)), definitions_(definitions) {
   open();
@@ -37,6 +62,7 @@ void Recorder::open() {
   writer_.emplace();
   bytes_ = 0;
   topics_ = 0;
+  is_new_ = true;
 }
 
 bool Recorder::reopen() {
@@ -62,6 +88,9 @@ void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& 
       topic.definition.clear();
     }
     writer_->add_topic(topic);
+  }
+  if (std::exchange(is_new_, false) && parameters_ != nullptr) {
+    parameters_->visit(message, [&](const bag::Message& known) { writer_->write(known); });
   }
   writer_->write(message);
   ++waiting_;
