@@ -8,24 +8,20 @@
 #include <system_error>
 #include <utility>
 
+#include "bag/autopilot_state.hpp"
 #include "bag/topic_columns.hpp"
 #include "bag/tuning.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/tuning.hpp"
-#include "mavlink/definition.hpp"
 
 namespace kelpie::live {
 
 void ParameterMessages::hear(const std::vector<bag::Topic>& topics, const bag::Message& message) {
-  const bag::Topic& topic = topics[message.topic];
-  if (topic.type != "PARAM_VALUE" || topic.encoding != "mavlink") {
-    return;
-  }
-  const mavlink::Field& name = *mavlink::find_definition(topic.type)->find("param_id");
-  const Name key{message.topic, mavlink::text_at(name, message.data)};
-  if (last_.size() < bag::kTuning.most_parameters || last_.contains(key)) {
-    last_[key].assign(message.data.begin(), message.data.end());
+  const Name name{message.topic, bag::parameter_told(topics[message.topic], message)};
+  if (!name.second.empty() &&
+      (last_.size() < bag::kTuning.most_parameters || last_.contains(name))) {
+    last_[name].assign(message.data.begin(), message.data.end());
   }
 }
 

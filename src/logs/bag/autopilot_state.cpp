@@ -54,6 +54,13 @@ void keep_parameter(std::map<std::string, double>& parameters, const std::string
   }
 }
 
+std::string parameter_told(const Topic& topic, const Message& message) {
+  return topic.type == "PARAM_VALUE" && topic.encoding == "mavlink"
+             ? mavlink::text_at(*mavlink::find_definition(topic.type)->find("param_id"),
+                                message.data)
+             : "";
+}
+
 AutopilotState::Known AutopilotState::known(const Topic& topic) {
   Known of;
   if (topic.encoding == "mavlink" && topic.name == topic.type) {  // the vehicle's own

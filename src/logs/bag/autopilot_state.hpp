@@ -19,6 +19,10 @@ namespace kelpie::bag {
 void keep_parameter(std::map<std::string, double>& parameters, const std::string& name,
                     double value);
 
+/// Name of the parameter that a PARAM_VALUE of MAVLink tells, of any sender; empty: another
+/// message.
+std::string parameter_told(const Topic& topic, const Message& message);
+
 /// What an autopilot says of itself: whether its motors are armed, and its parameters. Hears the
 /// vehicle's HEARTBEAT and PARAM_VALUE of MAVLink, and ARM, EV and PARM of DataFlash (ArduPilot).
 class AutopilotState {

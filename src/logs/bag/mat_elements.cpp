@@ -114,11 +114,7 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
       throw InputError("a struct without names of fields");
     }
     const std::size_t fields = names.data.size() / bytes_each;
-    if (fields > 0 && count > parts.left() / kTag / fields) {
-      throw InputError(fmt::format("{} structs of {} fields, which {} bytes can't hold", count,
-                                   fields, parts.left()));
-    }
-    held = count * fields;
+    held = fields > 0 && count > UINT64_MAX / fields ? UINT64_MAX : count * fields;
   }
   if (held > parts.left() / kTag) {
     throw InputError(fmt::format("{} elements, which {} bytes can't hold", held, parts.left()));
