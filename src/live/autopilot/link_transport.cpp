@@ -4,14 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iterator>
 
 #include "autopilot/tuning.hpp"
 #include "bag/topic_columns.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::autopilot {
 namespace {
@@ -89,6 +92,19 @@ std::vector<Senders::Id> named_senders(const live::Configuration& configuration)
     }
   }
   return named;
+}
+
+// Whether all velocities along the axes of the body are states of the model.
+bool knows_way(const live::Configuration& configuration) {
+  const std::vector<std::string>& inputs = configuration.plan.inputs;
+  std::array<bool, 3> known{};
+  for (const std::size_t state : find_states(configuration.settings.shared.states, inputs,
+                                             configuration.plan.targets.size())) {
+    if (const auto axis = velocity_axis(inputs[state]); axis && *axis < known.size()) {
+      known[*axis] = true;
+    }
+  }
+  return std::ranges::all_of(known, std::identity{});
 }
 
 std::string number_text(const Senders::Id& id) {
@@ -176,7 +192,10 @@ void LinkTransport::send_due(Clock::time_point now) {
   if (const std::optional<RateKeeper::MessageRate> wanted = rates_.next_request(now)) {
     request_rate(*wanted);
   }
-  if (const std::optional<std::string> name = parameters_.next_request(now)) {
+  // The answers of an autopilot on trial would not be passed on.
+  const std::optional<std::string> name =
+      senders_.vehicle() ? parameters_.next_request(now) : std::nullopt;
+  if (name) {
     request_parameter(*name);
   }
   if (reports_) {
@@ -280,7 +299,7 @@ void LinkTransport::hear_vehicle(const mavlink::Frame& frame) {
   if (frame.definition->name == "COMMAND_ACK" && value("command") == kSetMessageInterval) {
     rates_.acknowledge(static_cast<int>(value("result")), now);
   }
-  if (frame.definition->name == "PARAM_VALUE") {
+  if (frame.definition->name == "PARAM_VALUE" && senders_.vehicle()) {
     parameters_.hear(mavlink::text_at(*frame.definition->find("param_id"), frame.payload),
                      value("param_value"));
   }
@@ -364,6 +383,11 @@ std::unique_ptr<live::Transport> open_link(const live::Configuration& configurat
     table["velocity"].refuse(
         "tells measured velocities to the autopilot; from a pose a velocity is known half a window "
         "late, and reckoned until then, so leave it out or take \"none\"");
+  }
+  if (settings.velocity == VelocityMessage::delta && !knows_way(configuration)) {
+    table["velocity"].refuse(
+        "VISION_POSITION_DELTA tells the way ahead, to the right and down, which takes surge, sway "
+        "and heave among the velocities of the model; ODOMETRY can leave one open");
   }
   std::unique_ptr<ByteLine> line;
   try {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bag/autopilot_state.hpp"
 #include "log/ardusub.hpp"
 
 namespace kelpie::autopilot {
@@ -22,7 +23,7 @@ class ParameterKeeper {
   explicit ParameterKeeper(std::vector<std::size_t> outputs) : outputs_(std::move(outputs)) {}
 
   /// Takes the vehicle's PARAM_VALUE.
-  void hear(const std::string& name, double value) { known_[name] = value; }
+  void hear(const std::string& name, double value) { bag::keep_parameter(known_, name, value); }
 
   /// The parameter to ask for now, if any: one at a time, each again after
   /// Tuning::between_parameters, at most Tuning::most_asked times.

@@ -59,6 +59,7 @@ void Reporter::reckoned(const live::ReckonedSample& sample) {
   }
   constexpr std::array<double, kAxes> kFlu{1.0, -1.0, -1.0, 1.0, -1.0, -1.0};
   Twist twist{.stamp_ns = sample.data_ns};
+  twist.value.fill(std::numeric_limits<double>::quiet_NaN());
   twist.covariance.fill(std::numeric_limits<double>::quiet_NaN());
   std::vector<std::optional<std::size_t>> axes;
   std::ranges::transform(sample.names, std::back_inserter(axes), velocity_axis);
@@ -127,7 +128,7 @@ void Reporter::send_values(const std::vector<std::pair<std::string, double>>& va
   }
 }
 
-// The velocity alone: a position and an attitude of NaN are unknown.
+// The velocity alone: a position, an attitude and a component of the velocity of NaN are unknown.
 void Reporter::send_odometry(mavlink::FrameWriter& writer, const Send& send) const {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr double kLocalFrd = 20.0;  // MAV_FRAME_LOCAL_FRD
@@ -166,8 +167,10 @@ void Reporter::send_delta(mavlink::FrameWriter& writer, const Send& send) {
   writer.set("time_delta_usec", std::floor(1e6 * time_s));
   double variance = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
+    // The message has no unknown angle.
     const auto way = [&](std::size_t axis) {
-      return 0.5 * time_s * (told_->value[axis] + twist_->value[axis]);
+      const double sum = told_->value[axis] + twist_->value[axis];
+      return std::isnan(sum) ? 0.0 : 0.5 * time_s * sum;
     };
     writer.set("angle_delta", way(3 + i), i).set("position_delta", way(i), i);
     variance = std::fmax(variance, twist_->covariance[(kAxes + 1) * i]);

@@ -49,7 +49,7 @@ class Reporter final : public live::Output {
   // Of surge, sway, heave, roll, pitch and yaw, forward, right, down.
   struct Twist {
     std::int64_t stamp_ns = 0;
-    std::array<double, 6> value{};
+    std::array<double, 6> value{};        // NaN: unknown
     std::array<double, 36> covariance{};  // row-major; NaN: unknown
   };
 

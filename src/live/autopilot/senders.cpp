@@ -29,6 +29,7 @@ bool Senders::accept(const mavlink::Frame& frame, const Address& from, bool has_
       return false;
     }
     sender->from = from;
+    sender->rival.reset();
   }
   sender->heard = now;
   sender->is_autopilot |= bag::is_of_autopilot(frame);

@@ -10,6 +10,7 @@
 
 #include "autopilot/link_transport.hpp"
 #include "autopilot/tuning.hpp"
+#include "bag/autopilot_state.hpp"
 #include "core/text.hpp"
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
@@ -55,8 +56,9 @@ void take(const bag::Topic& topic, const bag::Message& message, HeardVehicle& he
   heard.messages.insert(topic.name);
   if (topic.name == "PARAM_VALUE") {
     const mavlink::Definition& definition = *mavlink::find_definition(topic.name);
-    heard.parameters[mavlink::text_at(*definition.find("param_id"), message.data)] =
-        mavlink::number_at(*definition.find("param_value"), message.data);
+    bag::keep_parameter(heard.parameters,
+                        mavlink::text_at(*definition.find("param_id"), message.data),
+                        mavlink::number_at(*definition.find("param_value"), message.data));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "chart/text_table.hpp"
@@ -18,31 +19,75 @@ namespace kelpie::cli {
 LiveConsole::LiveConsole(double status_s)
     : every_(status_s),
       terminal_(isatty(STDERR_FILENO) == 1),
-      shown_(std::chrono::steady_clock::now()) {}
+      shown_(std::chrono::steady_clock::now()),
+      writer_([this] { write(); }) {}
 
 LiveConsole::~LiveConsole() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  added_.notify_one();
+  writer_.join();
   if (terminal_) {
     fmt::print(stderr, "\r\033[K");
+  }
+}
+
+void LiveConsole::add(Line line) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() >= kMostWaiting) {
+      ++dropped_;
+      return;
+    }
+    if (dropped_ > 0) {
+      waiting_.push_back({.text = fmt::format("{} lines could not be written", dropped_)});
+      dropped_ = 0;
+    }
+    waiting_.push_back(std::move(line));
+  }
+  added_.notify_one();
+}
+
+void LiveConsole::write() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    added_.wait(lock, [&] { return ends_ || !waiting_.empty(); });
+    if (waiting_.empty()) {
+      return;
+    }
+    const Line line = std::move(waiting_.front());
+    waiting_.pop_front();
+    lock.unlock();
+    write(line);
+    lock.lock();
+  }
+}
+
+void LiveConsole::write(const Line& line) const {
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K{}", line.is_event ? "" : line.text);
+    static_cast<void>(std::fflush(stderr));
+  }
+  if (line.is_event) {
+    warn("kelpie: {}\n", line.text);
   }
 }
 
 void LiveConsole::event(const std::string& line) {
-  if (terminal_) {
-    fmt::print(stderr, "\r\033[K");
-  }
-  warn("kelpie: {}\n", line);
+  add({.text = line});
 }
 
 void LiveConsole::health(const live::Health& health) {
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", chart::shortened(status_text(health), 120));
-    static_cast<void>(std::fflush(stderr));
+    add({.text = chart::shortened(status_text(health), 120), .is_event = false});
     return;
   }
   const auto now = std::chrono::steady_clock::now();
   if (now - shown_ >= every_) {
     shown_ = now;
-    warn("kelpie: {}\n", status_text(health));
+    add({.text = status_text(health)});
   }
 }
 

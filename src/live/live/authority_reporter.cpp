@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "kelpie/core/error.hpp"
@@ -45,6 +46,7 @@ void AuthorityReporter::update(const Diagnosis* diagnosis, const Alignment& alig
                                LearnerHealth& health, Output& output) {
   health.authority.clear();
   health.effectiveness.reset();
+  health.held_current = std::numeric_limits<double>::quiet_NaN();
   if (diagnosis == nullptr || !diagnosis->knows_thrust() || ranges(*diagnosis).empty()) {
     return;
   }

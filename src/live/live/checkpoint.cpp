@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live/checkpoint.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "file/json.hpp"
 #include "format/model_json.hpp"
 #include "format/run_checkpoint.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/kelpie.h"
 #include "model/dynamics_axis.hpp"
-#include "study/nominal.hpp"
 
 namespace kelpie::live {
 namespace {
@@ -25,6 +26,24 @@ format::RunIdentity identity_of(const Configuration& configuration, const Alignm
           .targets = configuration.plan.targets,
           .alignment = alignment,
           .scale_given = false};
+}
+
+// Earlier checkpoints do not tell some fields. In these the fields have their usual values.
+void leave_out_untold(const std::string& header, format::RunIdentity& identity) {
+  const file::Json told = file::Json::parse(header, nullptr, false);
+  const file::Json run =
+      told.is_object() ? told.value("run", file::Json::object()) : file::Json::object();
+  std::erase_if(identity.run, [&](const auto& field) {
+    const auto& [key, value] = field;
+    const bool is_usual = (key.starts_with("log.scale.") && value == "1") ||
+                          (key == "log.armed_only" && value == "false") ||
+                          (key == "log.vectors.attitude" && value.empty());
+    return is_usual && run.is_object() && !run.contains(key);
+  });
+}
+
+DynamicsModel fresh_model(const Configuration& configuration) {
+  return {configuration.plan.inputs, configuration.plan.targets, configuration.settings};
 }
 
 void visit_time(Archive& archive, std::int64_t& time_ns) {
@@ -85,7 +104,9 @@ std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
     return std::nullopt;
   }
   const format::SavedModel saved = format::saved_model(*found);
-  format::RunState state = format::unpack_run(*found, identity_of(configuration, saved.alignment));
+  format::RunIdentity identity = identity_of(configuration, saved.alignment);
+  leave_out_untold(found->checkpoint.header, identity);
+  format::RunState state = format::unpack_run(*found, identity);
   SavedRun run{.progress = {},
                .alignment = saved.alignment,
                .model = std::move(state.model),
@@ -101,24 +122,26 @@ std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
   return run;
 }
 
-DynamicsModel model_to_begin_with(const Configuration& configuration,
+study::Nominal nominal_of(const Configuration& configuration) {
+  if (configuration.live.nominal.empty()) {
+    return {};
+  }
+  return study::nominal_of(format::read_model(configuration.live.nominal),
+                           configuration.plan.targets,
+                           fresh_model(configuration).mechanisms(0).terms(), "--nominal");
+}
+
+DynamicsModel model_to_begin_with(const Configuration& configuration, const study::Nominal& nominal,
                                   const std::optional<SavedRun>& saved) {
-  const auto fresh = [&] {
-    return DynamicsModel(configuration.plan.inputs, configuration.plan.targets,
-                         configuration.settings);
-  };
   if (!saved) {
-    DynamicsModel model = fresh();
-    if (!configuration.live.nominal.empty()) {
-      study::give(
-          study::nominal_of(format::read_model(configuration.live.nominal),
-                            configuration.plan.targets, model.mechanisms(0).terms(), "--nominal"),
-          model);
+    DynamicsModel model = fresh_model(configuration);
+    if (!nominal.empty()) {
+      study::give(nominal, model);
     }
     return model;
   }
   try {
-    return DynamicsModel::resume(fresh(), saved->model);
+    return DynamicsModel::resume(fresh_model(configuration), saved->model);
   } catch (const InputError& error) {
     throw InputError({.file = saved->file, .line = 0, .field = {}}, error.what());
   }

@@ -13,6 +13,7 @@
 #include "live/configuration.hpp"
 #include "live/transport.hpp"
 #include "log/read_log.hpp"
+#include "study/nominal.hpp"
 
 namespace kelpie::live {
 
@@ -66,7 +67,11 @@ std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
 
 /// The saved model, or a fresh model. Throws InputError (file) where the saved model cannot be
 /// resumed.
-DynamicsModel model_to_begin_with(const Configuration& configuration,
+DynamicsModel model_to_begin_with(const Configuration& configuration, const study::Nominal& nominal,
                                   const std::optional<SavedRun>& saved);
+
+/// What LiveSettings::nominal knows of a fresh model, from the disk; empty: nothing. Throws
+/// InputError as format::read_model() and study::nominal_of() do.
+study::Nominal nominal_of(const Configuration& configuration);
 
 }  // namespace kelpie::live

@@ -224,6 +224,12 @@ std::string names_of(const std::array<std::string, 3>& columns) {
   return fmt::format("{},{},{}", columns[0], columns[1], columns[2]);
 }
 
+// With conversions of units.
+std::string scale_text(const StreamPlan::Source& source) {
+  return number_text(source.scale) +
+         (source.about == 0.0 ? "" : " about " + number_text(source.about));
+}
+
 Configuration configuration_of(const file::TomlNode& root, const std::string& file,
                                log::LogConfig log, const std::vector<std::string>& set) {
   Configuration configuration{
@@ -263,6 +269,7 @@ Fields Configuration::identity() const {
       {"log.rate", number_text(plan.rate_hz)},
       {"log.clock", log.clock == bag::Clock::header ? "header" : "receive"},
       {"log.mirror_motors", log.mirror_motors ? "true" : "false"},
+      {"log.armed_only", log.armed_only ? "true" : "false"},
       {"log.gap", number_text(plan.gap_s)},
       {"log.filter", plan.derivative.window == FilterWindow::causal ? "causal" : "centred"},
       {"log.window", number_text(plan.derivative.window_s)},
@@ -279,16 +286,22 @@ Fields Configuration::identity() const {
         source.between == Interpolation::line ? "log.states." : "log.commands.";
     fields.emplace_back(table + source.name, source.from);
     fields.emplace_back("log.lag." + source.name, number_text(source.lag_s.value_or(0.0)));
+    fields.emplace_back("log.scale." + source.name, scale_text(source));
   }
   for (const StreamPlan::Derived& derived : plan.derived) {
     fields.emplace_back("log.derived." + derived.name, "d(" + derived.of + ")");
   }
   std::string vectors;
+  std::string attitudes;
   for (const StreamPlan::Vector& vector : plan.vectors) {
     vectors += fmt::format("{} from {} to {};", names_of(vector.columns), name_of(vector.from),
                            name_of(vector.to));
+    attitudes += vector.attitude.empty() ? ""
+                                         : fmt::format("{} in {};", join_text(vector.attitude, ","),
+                                                       vector.is_in_degrees ? "deg" : "rad");
   }
   fields.emplace_back("log.vectors", vectors);
+  fields.emplace_back("log.vectors.attitude", attitudes);
   std::string arm;
   if (plan.lever_arm) {
     arm = fmt::format("{} by {} at {}, {}, {} m", names_of(plan.lever_arm->velocity),

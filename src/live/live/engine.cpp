@@ -57,6 +57,9 @@ void Engine::record(std::unique_ptr<Recorder> recorder) {
     unrecorded_ += recorder_->lost();
   }
   recorder_ = std::move(recorder);
+  if (recorder_) {
+    recorder_->begin_with(told_);
+  }
 }
 
 void Engine::run(const std::function<Action()>& next_action) {
@@ -101,7 +104,7 @@ void Engine::learn() {
 }
 
 void Engine::receive(const std::function<Action()>& next_action) {
-  while (next_action() == Action::proceed && !has_ended_) {
+  while (next_action() == Action::proceed && !has_ended_ && !learning_ended_) {
     forward_request();
     bag::Message message;
     const Transport::Got got = transport_.next(message, kTuning.longest_wait);
@@ -111,6 +114,7 @@ void Engine::receive(const std::function<Action()>& next_action) {
       if (recorder_) {
         recorder_->write(transport_.topics(), message);
       }
+      told_.hear(transport_.topics(), message);
       receiver_.receive(transport_.topics(), message);
       if (outputs_.wants_predictions()) {
         predict();

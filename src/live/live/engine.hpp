@@ -40,8 +40,8 @@ class Engine {
          std::optional<SavedRun> saved, Outputs& outputs, Requests& requests);
 
   /// Runs until the end of a recording or Action::stop; then learns the waiting rows and writes
-  /// checkpoint and model. Throws Failure where the model cannot be written, and as the transport
-  /// does.
+  /// checkpoint and model. Throws Failure where the model cannot be written, and as the transport,
+  /// the learner and the outputs do.
   void run(const std::function<Action()>& next_action);
 
   void record(std::unique_ptr<Recorder> recorder);  ///< Null ends recording.
@@ -74,6 +74,7 @@ class Engine {
   double end_s_ = std::numeric_limits<double>::infinity();  // of a connection
   Receiver receiver_;
   LiveLearner learner_;
+  ParameterMessages told_;  // for the next file of a recording
   std::unique_ptr<Recorder> recorder_;
   Row row_;
   RowQueue queue_;

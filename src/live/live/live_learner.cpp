@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "core/seconds.hpp"
@@ -39,7 +40,8 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       block_(configuration.live.block.empty()
                  ? nullptr
                  : std::make_unique<file::SharedFile>(configuration.live.block)),
-      model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, saved))),
+      nominal_(nominal_of(configuration)),
+      model_(std::make_shared<SharedModel>(model_to_begin_with(configuration, nominal_, saved))),
       alignment_(configuration.plan.inputs, configuration.plan.targets.size(),
                  configuration.plan.rate_hz, configuration.settings.shared.states,
                  rows_to_keep(configuration, recording),
@@ -98,7 +100,7 @@ void LiveLearner::process(const Row& row) {
   if (!std::exchange(has_saved_, true)) {
     saved_t_s_ = row.t;
   }
-  if (!is_known() && !(std::abs(row.t - saved_t_s_) < checkpoint_s_)) {
+  if (!is_known() && (is_save_due_ || !(std::abs(row.t - saved_t_s_) < checkpoint_s_))) {
     save();
   }
   rows_taken_.fetch_add(1);
@@ -158,11 +160,7 @@ void LiveLearner::execute(Request request) {
                                         : "learning goes on");
       break;
     case Request::reset:
-      known_rows_ = 0;
-      progress_.doubt.clear();
-      begin_anew();
-      save();
-      output_.event("the model begins anew");
+      reset();
       break;
   }
   refresh_health();
@@ -171,17 +169,29 @@ void LiveLearner::execute(Request request) {
 void LiveLearner::save_all() {
   save();
   try {
-    write_model();
+    const bool is_written = write_model();
     if (health().checkpoint_error.empty()) {
-      output_.event(fmt::format("saved, after {} samples", progress_.learned));
+      output_.event(fmt::format("saved, after {} samples{}", progress_.learned,
+                                is_written ? "" : "; no model is ready yet"));
     }
   } catch (const std::exception& failure) {
     output_.event(std::string("no model could be written, learning goes on: ") + failure.what());
   }
 }
 
+void LiveLearner::reset() {
+  known_rows_ = 0;
+  progress_.doubt.clear();
+  begin_anew();
+  std::error_code error;
+  std::filesystem::remove(folder_ / "model.json", error);  // is of the old model
+  save();
+  output_.event("the model begins anew");
+}
+
 void LiveLearner::begin_anew() {
-  auto next = std::make_shared<SharedModel>(model_to_begin_with(configuration_, std::nullopt));
+  auto next =
+      std::make_shared<SharedModel>(model_to_begin_with(configuration_, nominal_, std::nullopt));
   {
     const std::lock_guard lock(mutex_);
     model_.swap(next);
@@ -265,8 +275,10 @@ void LiveLearner::finish() {
 
 void LiveLearner::save() {
   if (known_rows_ > 0 && is_known()) {
-    return;  // the one on the disk is further
+    is_save_due_ = true;  // the one on the disk is further
+    return;
   }
+  is_save_due_ = false;
   const bool was_well = health().checkpoint_error.empty();
   std::string error;
   try {

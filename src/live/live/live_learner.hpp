@@ -75,6 +75,7 @@ class LiveLearner {
   void update_alignment(bool afresh);
   void execute(Request request);
   void save_all();
+  void reset();
   void begin_anew();
   void align(const Row& row);
   void doubt(const std::vector<log::Mistake>& mistakes);
@@ -92,6 +93,7 @@ class LiveLearner {
   std::filesystem::path folder_;
   Output& output_;
   std::unique_ptr<file::SharedFile> block_;  // null: no block
+  const study::Nominal nominal_;             // of every model that begins
   std::shared_ptr<SharedModel> model_;       // replaced under mutex_, in the learning thread
   LiveAlignment alignment_;
   bool finds_alignment_ = false;
@@ -106,6 +108,7 @@ class LiveLearner {
   std::optional<ParameterCountdown> parameters_;  // where parameters are to be told
   double saved_t_s_ = 0.0;
   bool has_saved_ = false;
+  bool is_save_due_ = false;  // with the first row that no checkpoint has
   double last_t_s_ = 0.0;
   PredictionScore score_;
   std::vector<Prediction> predictions_;  // while learning is frozen

@@ -25,7 +25,7 @@ class Outputs final : public Output {
   /// Replaces the outputs of the previous call.
   void use(std::vector<std::unique_ptr<Output>> outputs) {
     const std::lock_guard lock(mutex_);
-    outputs_ = std::move(outputs);
+    outputs_.swap(outputs);  // the end of an output may take its time
   }
 
   bool wants_predictions() const override {

@@ -10,7 +10,6 @@
 #include "live/checkpoint.hpp"
 #include "live/tuning.hpp"
 #include "log/ardusub.hpp"
-#include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "stream/attitude_source.hpp"
 
@@ -63,6 +62,7 @@ Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_
   const StreamPlan& plan = configuration.plan;
   for (const auto& topic : columns_) {
     health_.push_back({.name = topic->topic()});
+    sender_times_.expect(topic->topic());
     auto& of_topic = sources_.emplace_back();
     for (const bag::ColumnName& column : topic->columns()) {
       if (const auto least = configuration.live.valid.find(column.name);
@@ -139,6 +139,9 @@ void Receiver::receive(const std::vector<bag::Topic>& topics, const bag::Message
     health_[place].last_error = error.what();
     return;
   }
+  if (!columns.settle_time(sender_times_)) {
+    return;
+  }
   const bool is_valid = this->is_valid(place);
   for (std::size_t column = 0; column < sources_[place].size(); ++column) {
     for (const std::size_t source : sources_[place][column]) {
@@ -174,7 +177,7 @@ bool Receiver::mirror(std::size_t source, TopicHealth& health, double& value) {
     }
     health.refused.clear();
   }
-  value = kNeutralPulseUs + *factor * (value - kNeutralPulseUs);
+  value = log::mirrored(value, *factor);
   return true;
 }
 
@@ -263,29 +266,24 @@ double Receiver::angle_at(double t, std::size_t angle) const {
 bool Receiver::inputs_at(double t, std::span<const double> shift_s, std::span<double> x,
                          std::span<const std::size_t> silent) const {
   const StreamPlan& plan = stream_.plan();
+  const auto is_silent = [&](std::size_t source) {
+    return !(now_s_ - stream_.signal(source).newest_s() <= plan.gap_s);
+  };
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::ranges::find(silent, i) != silent.end()) {
       x[i] = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
     const auto& [source, angle] = inputs_[i];
-    if (angle) {
+    if (angle && !std::ranges::any_of(quaternion_, is_silent)) {
       x[i] = angle_at(t, *angle);
-      if (!std::isfinite(x[i])) {
-        return false;
-      }
-      continue;
-    }
-    if (!source) {
+    } else if (!angle && source && !is_silent(*source)) {
+      const SignalHistory& signal = stream_.signal(*source);
+      // What is newer than the newest is held.
+      x[i] = signal.at(std::min(t + shift_s[i], signal.newest_s()), plan.sources[*source].between);
+    } else {
       return false;
     }
-    const SignalHistory& signal = stream_.signal(*source);
-    const double newest_s = signal.newest_s();
-    if (!(now_s_ - newest_s <= plan.gap_s)) {
-      return false;
-    }
-    // What is newer than the newest is held.
-    x[i] = signal.at(std::min(t + shift_s[i], newest_s), plan.sources[*source].between);
     if (!std::isfinite(x[i])) {
       return false;
     }

@@ -101,6 +101,7 @@ class Receiver {
   SampleStream stream_;
   std::vector<std::unique_ptr<bag::TopicColumns>> columns_;     // per topic in use
   std::vector<std::vector<std::vector<std::size_t>>> sources_;  // fed by each column
+  bag::SenderTimes sender_times_;
   std::vector<TopicHealth> health_;
   std::vector<Validity> validity_;     // of topics in use
   std::vector<std::size_t> by_topic_;  // index of a transport's topic -> index here

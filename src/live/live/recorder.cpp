@@ -8,12 +8,33 @@
 #include <system_error>
 #include <utility>
 
+#include "bag/autopilot_state.hpp"
 #include "bag/topic_columns.hpp"
+#include "bag/tuning.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/tuning.hpp"
 
 namespace kelpie::live {
+
+void ParameterMessages::hear(const std::vector<bag::Topic>& topics, const bag::Message& message) {
+  const Name name{message.topic, bag::parameter_told(topics[message.topic], message)};
+  if (!name.second.empty() &&
+      (last_.size() < bag::kTuning.most_parameters || last_.contains(name))) {
+    last_[name].assign(message.data.begin(), message.data.end());
+  }
+}
+
+void ParameterMessages::visit(const bag::Message& like,
+                              const std::function<void(const bag::Message&)>& use) const {
+  bag::Message message = like;
+  for (const auto& [name, data] : last_) {
+    message.topic = name.first;
+    message.data = data;
+    use(message);
+  }
+}
+
 Recorder::Recorder(std::filesystem::path folder, const std::filesystem::path& definitions)
     : folder_(std::move(folder)), definitions_(definitions) {
   open();
@@ -37,6 +58,7 @@ void Recorder::open() {
   writer_.emplace();
   bytes_ = 0;
   topics_ = 0;
+  is_new_ = true;
 }
 
 bool Recorder::reopen() {
@@ -62,6 +84,9 @@ void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& 
       topic.definition.clear();
     }
     writer_->add_topic(topic);
+  }
+  if (std::exchange(is_new_, false) && parameters_ != nullptr) {
+    parameters_->visit(message, [&](const bag::Message& known) { writer_->write(known); });
   }
   writer_->write(message);
   ++waiting_;

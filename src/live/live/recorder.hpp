@@ -4,8 +4,11 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bag/mcap_writer.hpp"
@@ -13,14 +16,33 @@
 
 namespace kelpie::live {
 
-/// Records messages to an MCAP file. At most the last Tuning::between_recordings are lost, whatever
-/// happens; a killed program leaves a file without an end, which `--recover` reads. Where the disk
-/// takes no more, messages are counted as lost, until a new file can be written. For one thread.
+/// The last PARAM_VALUE of each of a vehicle's parameters, in bounded memory. A vehicle tells its
+/// parameters once, and every recording needs the parameters.
+class ParameterMessages {
+ public:
+  void hear(const std::vector<bag::Topic>& topics, const bag::Message& message);
+
+  /// Calls `use` with each, by topic and name, as if received with `like`.
+  void visit(const bag::Message& like, const std::function<void(const bag::Message&)>& use) const;
+
+ private:
+  using Name = std::pair<std::size_t, std::string>;  // of topic and parameter
+
+  std::map<Name, std::vector<std::byte>> last_;
+};
+
+/// Records messages to an MCAP file. A killed program loses at most the last
+/// Tuning::between_recordings, a power cut also what the system has not yet written; the file then
+/// has no end, and `--recover` reads the file. Where the disk takes no more, messages are counted
+/// as lost, until a new file can be written. For one thread.
 class Recorder {
  public:
   /// Creates live_0001.mcap, live_0002.mcap, … in `folder`, and the folder where missing. Throws
   /// Failure.
   Recorder(std::filesystem::path folder, const std::filesystem::path& definitions);
+
+  /// Every new file begins with these. Requires that they outlive this.
+  void begin_with(const ParameterMessages& parameters) { parameters_ = &parameters; }
 
   void write(const std::vector<bag::Topic>& topics, const bag::Message& message);
   void finish();  ///< Writes the end of the file.
@@ -40,6 +62,8 @@ class Recorder {
   std::optional<file::Descriptor> file_;  // none: the disk took no more
   std::size_t bytes_ = 0;                 // in the file
   std::optional<bag::McapWriter> writer_;
+  const ParameterMessages* parameters_ = nullptr;
+  bool is_new_ = true;       // nothing was written to the file
   std::size_t topics_ = 0;   // added to the file
   std::size_t waiting_ = 0;  // messages in writer_
   std::size_t lost_ = 0;

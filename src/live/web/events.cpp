@@ -136,7 +136,7 @@ Json field_json(const live::HealthField<Of>& field, const Of& of) {
     case live::HealthKind::flag:
       return value > 0.0;
     case live::HealthKind::count:
-      return static_cast<std::int64_t>(value);
+      return std::isfinite(value) ? Json(static_cast<std::int64_t>(value)) : Json();
     default:  // milliseconds are enough of a time
       return file::number(field.unit == "s" ? std::round(1e3 * value) / 1e3 : value);
   }

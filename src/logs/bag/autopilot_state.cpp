@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "bag/decoding.hpp"
+#include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
 #include "wire/scalar.hpp"
 
@@ -44,14 +45,21 @@ double number_in(const MessageType& type, std::string_view name,
              : wire::number_of(field->kind, bytes, std::endian::little);
 }
 
-std::string text_of_bytes(std::span<const std::byte> bytes) {
-  const auto end = std::ranges::find(bytes, std::byte{0});
-  std::string text;
-  std::for_each(bytes.begin(), end, [&](std::byte byte) { text += static_cast<char>(byte); });
-  return text;
+}  // namespace
+
+void keep_parameter(std::map<std::string, double>& parameters, const std::string& name,
+                    double value) {
+  if (parameters.size() < kTuning.most_parameters || parameters.contains(name)) {
+    parameters[name] = value;
+  }
 }
 
-}  // namespace
+std::string parameter_told(const Topic& topic, const Message& message) {
+  return topic.type == "PARAM_VALUE" && topic.encoding == "mavlink"
+             ? mavlink::text_at(*mavlink::find_definition(topic.type)->find("param_id"),
+                                message.data)
+             : "";
+}
 
 AutopilotState::Known AutopilotState::known(const Topic& topic) {
   Known of;
@@ -99,18 +107,19 @@ void AutopilotState::hear_mavlink(const Known& of, std::span<const std::byte> me
     const double mode = mavlink::number_at(*definition.find("base_mode"), message);
     hear_armed((static_cast<unsigned>(mode) & kSafetyArmed) != 0);
   } else {
-    parameters_[mavlink::text_at(*definition.find("param_id"), message)] =
-        mavlink::number_at(*definition.find("param_value"), message);
+    keep_parameter(parameters_, mavlink::text_at(*definition.find("param_id"), message),
+                   mavlink::number_at(*definition.find("param_value"), message));
   }
 }
 
 void AutopilotState::hear_dataflash(const Known& of, std::span<const std::byte> message) {
   if (of.kind == Kind::parameter) {
-    const std::string name = text_of_bytes(bytes_of_field(of.type, "Name", message));
+    const std::string name = wire::text_of(bytes_of_field(of.type, "Name", message));
+    const double value = number_in(of.type, "Value", message);
     if (!name.empty()) {
-      parameters_[name] = number_in(of.type, "Value", message);
+      keep_parameter(parameters_, name, value);
     }
-    if (name == "LOG_DISARMED" && parameters_[name] > 0.0 && !is_armed_) {
+    if (name == "LOG_DISARMED" && value > 0.0 && !is_armed_) {
       hear_armed(false);  // such a log begins before the motors are armed, others with arming
     }
     return;

@@ -14,6 +14,15 @@
 
 namespace kelpie::bag {
 
+/// Keeps the value of a parameter; of a new name only below Tuning::most_parameters names, so that
+/// damaged and hostile messages fill no memory.
+void keep_parameter(std::map<std::string, double>& parameters, const std::string& name,
+                    double value);
+
+/// Name of the parameter that a PARAM_VALUE of MAVLink tells, of any sender; empty: another
+/// message.
+std::string parameter_told(const Topic& topic, const Message& message);
+
 /// What an autopilot says of itself: whether its motors are armed, and its parameters. Hears the
 /// vehicle's HEARTBEAT and PARAM_VALUE of MAVLink, and ARM, EV and PARM of DataFlash (ArduPilot).
 class AutopilotState {

@@ -21,6 +21,7 @@
 #include "bag/topic_columns.hpp"
 #include "bag/tuning.hpp"
 #include "kelpie/core/error.hpp"
+#include "wire/scalar.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -33,10 +34,8 @@ std::uint8_t byte_at(std::span<const std::byte> bytes, std::size_t at) {
   return std::to_integer<std::uint8_t>(bytes[at]);
 }
 
-// Text in a fixed number of bytes.
 std::string word_at(std::span<const std::byte> bytes, std::size_t at, std::size_t length) {
-  const std::string_view all(reinterpret_cast<const char*>(bytes.data()) + at, length);  // NOLINT
-  return std::string(all.substr(0, std::min(all.find('\0'), all.size())));
+  return wire::text_of(bytes.subspan(at, length));
 }
 
 bool is_one_word(std::string_view text) {

@@ -16,6 +16,7 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
+constexpr std::int64_t kMicrosecondNs = 1'000;
 constexpr std::int64_t kMostWrapped = std::int64_t{1} << 40;  // in ms it still fits, in ns
 
 template <MessageDialect dialect>
@@ -141,6 +142,18 @@ std::int64_t StampReader::time_ns() const {
     time_ns += (one.value + one.wrapped) * one.part.unit_ns;
   }
   return time_ns;
+}
+
+bool StampReader::overflows() const {
+  return parts_.size() == 1 && parts_[0].wraps_at > 0 && parts_[0].part.unit_ns <= kMicrosecondNs;
+}
+
+void StampReader::place(std::int64_t near_ns) {
+  Part& one = parts_.front();
+  const auto left = static_cast<double>(near_ns / one.part.unit_ns - one.value);
+  const double overflows = std::round(left / static_cast<double>(one.wraps_at));
+  one.wrapped = one.wraps_at * static_cast<std::int64_t>(std::fmax(overflows, 0.0));
+  is_placed_ = true;
 }
 
 }  // namespace kelpie::bag

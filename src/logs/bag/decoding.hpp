@@ -83,6 +83,12 @@ class StampReader {
   /// Stamp of the last message. Counters of 32 bits that overflow (after 71 minutes in µs) are
   /// continued.
   std::int64_t time_ns() const;
+  /// Whether the stamp is such a counter of µs: the overflows before its first message are unknown.
+  bool overflows() const;
+  /// Adds overflows to the last stamp and later ones, so that the last stamp is nearest to
+  /// `near_ns`. Requires overflows().
+  void place(std::int64_t near_ns);
+  bool is_placed() const { return is_placed_; }  ///< by place()
 
  private:
   struct Part {
@@ -95,6 +101,7 @@ class StampReader {
   static void count_on(Part& one, std::int64_t count);
 
   std::vector<Part> parts_;
+  bool is_placed_ = false;
 };
 
 }  // namespace kelpie::bag

@@ -113,7 +113,8 @@ void check_matrix(std::span<const std::byte> bytes, std::endian order, std::size
     if (bytes_each == 0 || names.data.size() % bytes_each != 0) {
       throw InputError("a struct without names of fields");
     }
-    held = count * (names.data.size() / bytes_each);
+    const std::size_t fields = names.data.size() / bytes_each;
+    held = fields > 0 && count > UINT64_MAX / fields ? UINT64_MAX : count * fields;
   }
   if (held > parts.left() / kTag) {
     throw InputError(fmt::format("{} elements, which {} bytes can't hold", held, parts.left()));

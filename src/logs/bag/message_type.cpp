@@ -177,6 +177,7 @@ class TreeBuilder {
     if (++fields_ > kTuning.most_fields) {
       throw InputError(type_.name, fmt::format("has more than {} fields", kTuning.most_fields));
     }
+    check_name_length(holder, line.name);
     if (line.type == "wstring") {
       throw InputError(holder, fmt::format("{} is a wstring, which isn't read", line.name));
     }
@@ -224,6 +225,13 @@ void collect_types(Sources& sources, const std::string& name, std::vector<std::s
 
 std::size_t MessageType::find(const std::string& path) const {
   return static_cast<std::size_t>(std::ranges::find(leaves, path, &Leaf::path) - leaves.begin());
+}
+
+void check_name_length(const std::string& type, std::string_view field) {
+  if (field.size() > kTuning.longest_name) {
+    throw InputError(
+        type, fmt::format("has a field whose name is longer than {} bytes", kTuning.longest_name));
+  }
 }
 
 void add_packed_field(MessageType& type, const std::string& name, FieldKind kind,

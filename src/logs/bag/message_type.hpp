@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wire/scalar.hpp"
@@ -54,6 +55,9 @@ struct MessageType {
   /// The leaf with this path, or leaves.size().
   std::size_t find(const std::string& path) const;
 };
+
+/// Throws InputError (type) on a name beyond Tuning::longest_name: every leaf keeps its whole path.
+void check_name_length(const std::string& type, std::string_view field);
 
 /// Appends a field to a packed layout: a number, an array of `count` numbers, or a text of `count`
 /// bytes.

@@ -31,9 +31,9 @@ class SeriesBuilder {
 
   void leave_out() { ++series_.disarmed; }
 
-  void add(MessageReader& bag, const Message& message) {
+  void add(MessageReader& bag, const Message& message, SenderTimes& times) {
     columns_.begin(message);
-    if (!decode(bag, message, columns_.decoder(), columns_)) {
+    if (!decode(bag, message, columns_.decoder(), columns_) || !columns_.settle_time(times)) {
       return;
     }
     series_.times_ns.push_back(columns_.time_ns());
@@ -113,8 +113,10 @@ std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& def
   const std::vector<std::unique_ptr<TopicColumns>> wanted = columns_by_topic(columns);
   std::vector<SeriesBuilder> builders;
   builders.reserve(wanted.size());
+  SenderTimes times;
   for (const auto& one : wanted) {
     builders.emplace_back(*one);
+    times.expect(one->topic());
   }
   std::vector<SeriesBuilder*> by_topic;  // nullptr: no column is of it
   const auto bind_new_topics = [&] {
@@ -139,7 +141,7 @@ std::vector<Series> read_named(MessageReader& bag, const MessageDefinitions& def
     if (builder != nullptr && armed_only && autopilot.is_disarmed()) {
       builder->leave_out();
     } else if (builder != nullptr) {
-      builder->add(bag, message);
+      builder->add(bag, message, times);
     }
   }
   bind_new_topics();

@@ -88,18 +88,15 @@ class TlogReader final : public FileReader {
            !(is_foreign && ends_where_another_begins(bytes, head));
   }
 
-  // A frame with a wrong checksum is refused, or counted and passed over.
+  // A frame with a wrong checksum is refused, or counted and passed over where its length is right.
   void leave_damaged(std::span<const std::byte> bytes, const FrameHead& head) {
-    if (mode() == ReadMode::strict) {
+    const bool has_length = ends_where_another_begins(bytes, head);
+    if (mode() == ReadMode::strict || !has_length) {
       region_.refuse(
           at_, fmt::format("a frame is damaged: the checksum of message {} is wrong", head.id()));
     }
     pass_over(topic_called(head, mavlink::find_definition(head.id())).name);
-    if (ends_where_another_begins(bytes, head)) {
-      at_ += kStamp + head.frame_bytes();
-    } else {
-      pass_damage();
-    }
+    at_ += kStamp + head.frame_bytes();
   }
 
   bool step(Message& message) override {

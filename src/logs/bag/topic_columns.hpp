@@ -14,6 +14,7 @@
 #include "bag/decoding.hpp"
 #include "bag/message_type.hpp"
 #include "bag/reader.hpp"
+#include "bag/sender_times.hpp"
 
 namespace kelpie::bag {
 
@@ -71,6 +72,9 @@ class TopicColumns final : public NumberVisitor {
   std::span<const double> values() const {
     return values_;
   }  ///< a value per column; NaN: not in the message
+  /// Compares the message's time with other messages of its sender, before time_ns(); whether the
+  /// message may be used.
+  bool settle_time(SenderTimes& times) { return times.settle(topic_, receive_ns_, stamp_); }
   std::int64_t time_ns() const { return stamp_.exists() ? stamp_.time_ns() : receive_ns_; }
 
   bool wants(std::size_t leaf) const override { return wanted_[leaf] || stamp_.wants(leaf); }

@@ -14,7 +14,8 @@ inline constexpr struct Tuning {
   std::size_t deepest_struct = 16;             ///< MATLAB: structs within structs; by hand
   std::size_t most_arrays = 20'000;            ///< MATLAB: arrays of a file; by hand
   std::size_t most_elements = 1'000;           ///< MATLAB: structs or cells of an array; by hand
-  std::size_t longest_name = 200;              ///< MATLAB: bytes of a name; by hand
+  std::size_t longest_name = 200;              ///< bytes of a variable's or field's; by hand
+  std::size_t most_parameters = 4096;          ///< of an autopilot, which has 1,500; by hand
   std::uint64_t most_numbers = 1ULL << 40U;    ///< MATLAB: numbers of an array; by hand
   std::size_t child_free_bytes = 256'000'000;  ///< MATLAB: memory of a child; by hand
   std::size_t child_ratio = 64;         ///< MATLAB: … and more for each byte of the file; by hand
@@ -28,10 +29,12 @@ inline constexpr struct Tuning {
   int zstd_level = 3;                ///< zstd's own default
 
   // Clocks.
-  std::int64_t wrap_margin_ns = 60'000'000'000;   ///< around the end of a 32-bit counter; by hand
-  std::int64_t between_logs_ns = 60'000'000'000;  ///< between two logs in a .BIN file; by hand
-  double first_datenum = 7.0e5;                   ///< days: year 1916; by hand
-  double last_datenum = 8.0e5;                    ///< days: year 2190; by hand
+  std::int64_t wrap_margin_ns = 60'000'000'000;  ///< around the end of a 32-bit counter; by hand
+  std::int64_t longest_uptime_ns = 100'000'000'000'000'000;  ///< of a sender: 3 years; by hand
+  std::int64_t longest_untimed_ns = 5'000'000'000;  ///< wait for a sender's uptime; by hand
+  std::int64_t between_logs_ns = 60'000'000'000;    ///< between two logs in a .BIN file; by hand
+  double first_datenum = 7.0e5;                     ///< days: year 1916; by hand
+  double last_datenum = 8.0e5;                      ///< days: year 2190; by hand
   double longest_datenum_step = 2e-5;  ///< days per row (1.7 s): slower rows are not days; by hand
 
   // Noise of a field (Statistics).

@@ -16,7 +16,6 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::uint64_t kMostUlogBytes = UINT16_MAX;  // a message's size has 16 bits
-constexpr std::size_t kMostUlogPadding = 7;
 constexpr std::string_view kPadding = "_padding";
 
 const wire::CName* ulog_number_called(std::string_view name) {
@@ -100,6 +99,7 @@ class UlogTree {
     if (++fields_ > kTuning.most_fields) {
       throw InputError(type_.name, fmt::format("has more than {} fields", kTuning.most_fields));
     }
+    check_name_length(type_.name, from.name);
     const wire::CName* const number = ulog_number_called(from.type);
     const bool is_text = number != nullptr &&
                          (number->kind == FieldKind::characters || from.name.starts_with(kPadding));
@@ -128,18 +128,19 @@ class UlogTree {
   std::size_t fields_ = 0;
 };
 
-// The formats that `name` holds, without those in `seen` already.
-void collect_formats(const std::string& name, const UlogFormats& formats,
+// The formats that `name` holds, without those in `seen` already. Deeper ones are of no use:
+// UlogTree refuses the type.
+void collect_formats(const std::string& name, const UlogFormats& formats, std::size_t depth,
                      std::set<std::string>& seen, std::string& text) {
   const auto found = formats.find(name);
-  if (found == formats.end() || !seen.insert(name).second) {
+  if (depth > kTuning.deepest_type || found == formats.end() || !seen.insert(name).second) {
     return;
   }
   text += name + ":" + found->second + "\n";
   for (const std::string& field : split_text(found->second, ';')) {
     const std::string type = field.substr(0, field.find_first_of("[ "));
     if (ulog_number_called(type) == nullptr) {
-      collect_formats(type, formats, seen, text);
+      collect_formats(type, formats, depth + 1, seen, text);
     }
   }
 }
@@ -149,7 +150,7 @@ void collect_formats(const std::string& name, const UlogFormats& formats,
 std::string ulog_definition(const std::string& name, const UlogFormats& formats) {
   std::set<std::string> seen;
   std::string text;
-  collect_formats(name, formats, seen, text);
+  collect_formats(name, formats, 0, seen, text);
   return text;
 }
 

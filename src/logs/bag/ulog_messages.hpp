@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <span>
 #include <string>
@@ -10,6 +11,8 @@
 #include "bag/decoding.hpp"
 
 namespace kelpie::bag {
+
+inline constexpr std::size_t kMostUlogPadding = 7;  ///< bytes at the end of a message
 
 /// Formats of a ULog file by name: of "vehicle_attitude:uint64_t timestamp;float[4] q;…" the fields
 /// by the name before the colon.

@@ -35,7 +35,6 @@ struct UlogRecord {
   std::size_t end() const { return offset + kUlogHead + content.size(); }
 };
 
-constexpr std::size_t kMostTrailingPadding = 7;
 constexpr std::string_view kUlogTypes = "BFIMPQARDLCSO";
 
 bool is_ascii(std::string_view text) {
@@ -86,7 +85,7 @@ struct UlogSubscription {
 
   // Whether a message can have that many bytes: some writers add the padding at its end.
   bool can_have(std::size_t size) const {
-    return !bytes || (size >= *bytes && size <= *bytes + kMostTrailingPadding);
+    return !bytes || (size >= *bytes && size <= *bytes + kMostUlogPadding);
   }
 };
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "file/descriptor.hpp"
+#include "file/mapped_file.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::file {
@@ -123,8 +124,15 @@ void sync_folder(const fs::path& folder) {
   }
 }
 
-// The content of `file` under another name as well, by a link that takes the place of whatever has
-// that name. Nothing where there is no such file.
+void keep_copy(const fs::path& file, const fs::path& to) {
+  const MappedFile content(file);
+  const auto* const text = reinterpret_cast<const char*>(content.bytes().data());  // NOLINT
+  Draft draft(to, std::string(text, content.bytes().size()));
+  draft.publish();
+}
+
+// The content of `file`, which is no symbolic link, under another name as well, by a link that
+// takes the place of whatever has that name. Nothing where there is no such file.
 void keep(const fs::path& file, const fs::path& previous) {
   const Descriptor old(file, O_RDWR);
   if (old.is_open()) {
@@ -135,6 +143,10 @@ void keep(const fs::path& file, const fs::path& previous) {
   ::unlink(link.c_str());
   const bool linked = ::link(file.c_str(), link.c_str()) == 0;
   if (!linked && errno == ENOENT) {
+    return;
+  }
+  if (!linked && errno == EXDEV) {  // `previous` stands beside a symbolic link
+    keep_copy(file, previous);
     return;
   }
   const fs::path& from = linked ? link : file;
@@ -182,7 +194,7 @@ void make_folder(const fs::path& folder) {
 
 void write_file_keeping(const fs::path& file, std::string_view content, const fs::path& previous) {
   Draft draft(file, std::string(content));
-  keep(file, previous);
+  keep(draft.place(), previous);
   draft.publish();
   sync_folder(parent_of(draft.place()));
 }

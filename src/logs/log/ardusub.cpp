@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -109,6 +110,10 @@ std::optional<double> pulse_factor(const ParameterMap& parameters, std::size_t o
     }
   }
   return 1.0;
+}
+
+double mirrored(double pulse_us, double factor) {
+  return kNeutralPulseUs + factor * (pulse_us - kNeutralPulseUs);
 }
 
 std::string other_outputs_text(const ParameterMap& parameters) {

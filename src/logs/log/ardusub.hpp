@@ -33,6 +33,9 @@ std::size_t output_of(std::string_view column);
 /// motor with MOT_n_DIRECTION −1. Empty: SERVOn_FUNCTION, or the direction of a motor, is unknown.
 std::optional<double> pulse_factor(const ParameterMap& parameters, std::size_t output);
 
+/// The pulse with that factor.
+double mirrored(double pulse_us, double factor);
+
 /// Names of the parameters that pulse_factor() needs next; empty: none.
 std::string next_parameter(const ParameterMap& parameters, std::size_t output);
 

@@ -406,6 +406,14 @@ class Finder {
 
 }  // namespace
 
+std::string toml_text(std::string_view name) {
+  std::string literal = "\"";
+  for (const char c : name) {
+    literal += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  }
+  return literal + "\"";
+}
+
 bool can_be_written(std::string_view name) {
   for (std::size_t i = 0; i < name.size();) {
     const auto c = static_cast<unsigned char>(name[i]);

@@ -253,7 +253,7 @@ const std::vector<double>& finite_column(const Table& table, const std::string& 
   return values;
 }
 
-std::vector<double> row_times(const Table& table, const Roles& roles) {
+std::vector<double> command_times(const Table& table, const Roles& roles) {
   std::vector<double> times(table.rows());
   if (roles.rate_hz > 0.0) {
     for (std::size_t row = 0; row < times.size(); ++row) {
@@ -267,6 +267,8 @@ std::vector<double> row_times(const Table& table, const Roles& roles) {
            "there is no column t, time or stamp; name one with --time, or give --rate");
   }
   times = finite_column(table, name);
+  const double unit_s = table.seconds_per_unit(table.find(name));
+  std::ranges::for_each(times, [&](double& time) { time *= unit_s; });
   const auto later = std::ranges::adjacent_find(times, [](double a, double b) { return b <= a; });
   if (later != times.end()) {
     const auto row = static_cast<std::size_t>(later - times.begin()) + 1;
@@ -417,7 +419,7 @@ Dataset make_commands(const Table& table, const Roles& roles,
   Dataset data;
   data.source = table.source;
   data.input_names = roles.inputs;
-  data.times_s = row_times(table, roles);
+  data.times_s = command_times(table, roles);
   data.rate_hz = measured_rate(data.times_s);
   data.rows_read = table.rows();
   const std::size_t inputs = roles.inputs.size();

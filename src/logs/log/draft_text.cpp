@@ -10,14 +10,6 @@
 namespace kelpie::log {
 namespace {
 
-std::string quoted(const std::string& text) {
-  std::string literal = "\"";
-  for (const char c : text) {
-    literal += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  }
-  return literal + "\"";
-}
-
 // A line of a comment holds no line ends, whatever a log's names hold.
 std::string comment(const std::string& text) {
   return can_be_written(text) ? "# " + text + "\n" : "";
@@ -25,12 +17,12 @@ std::string comment(const std::string& text) {
 
 std::string list_text(const std::vector<std::string>& names) {
   std::vector<std::string> literals;
-  std::ranges::transform(names, std::back_inserter(literals), quoted);
+  std::ranges::transform(names, std::back_inserter(literals), toml_text);
   return "[" + join_text(literals, ", ") + "]";
 }
 
 std::string line_text(const DraftPlan::Line& line, bool is_taken) {
-  return fmt::format("{}{} = {}{}\n", is_taken ? "" : "# ", line.name, quoted(line.from),
+  return fmt::format("{}{} = {}{}\n", is_taken ? "" : "# ", line.name, toml_text(line.from),
                      line.why.empty() || !can_be_written(line.why) ? "" : "  # " + line.why);
 }
 
@@ -71,7 +63,7 @@ std::string keys_text(const DraftPlan& plan, const std::string& definitions) {
   text += fmt::format("{}inputs = {}\n{}targets = {}\n", absent, list_text(plan.inputs), absent,
                       list_text(plan.targets));
   if (!plan.time.empty()) {
-    text += fmt::format("time = {}  # s\n", quoted(plan.time));
+    text += fmt::format("time = {}  # s\n", toml_text(plan.time));
   }
   if (plan.rate_hz > 0.0) {
     text += fmt::format("rate = {:.4g}  # rows per second: {}\n", plan.rate_hz, plan.rate_why);
@@ -98,15 +90,16 @@ std::string keys_text(const DraftPlan& plan, const std::string& definitions) {
     text += "armed_only = true  # messages while the motors are disarmed are left out\n";
   }
   if (plan.is_of_bag && !definitions.empty()) {
-    text += fmt::format("messages = {}\n",
-                        quoted(std::filesystem::absolute(definitions).lexically_normal().string()));
+    text +=
+        fmt::format("messages = {}\n",
+                    toml_text(std::filesystem::absolute(definitions).lexically_normal().string()));
   }
   if (!plan.vectors.empty()) {
     text += fmt::format("vectors = [{}]\n", join_text(plan.vectors, ", "));
   }
   std::vector<std::string> units;
   for (const DraftPlan::Line& unit : plan.units) {
-    units.push_back(fmt::format("{} = {}", unit.name, quoted(unit.from)));
+    units.push_back(fmt::format("{} = {}", unit.name, toml_text(unit.from)));
   }
   if (!units.empty()) {
     text += fmt::format("units = {{{}}}\n", join_text(units, ", "));
@@ -143,7 +136,7 @@ std::string draft_text(const DraftPlan& plan, const std::string& log,
   if (!plan.others.empty()) {
     text += "\n# Fields that change; lines of [log.states] and [log.commands] name the columns:\n";
     for (const DraftPlan::Line& line : plan.others) {
-      text += comment(fmt::format("  NAME = {}  # {}", quoted(line.from), line.why));
+      text += comment(fmt::format("  NAME = {}  # {}", toml_text(line.from), line.why));
     }
   }
   if (!plan.scales.empty()) {

@@ -248,9 +248,12 @@ class LogConfigReader {
       value.refuse("has angles and a quaternion; one of them is the attitude");
     }
     pose.attitude = has_quaternion ? quaternion : has_angles ? angles : pose.attitude;
-    for (SamplingPlan::Source& source : plan().sources) {
+    for (const SamplingPlan::Source& source : plan().sources) {
       if (parts.is_in_degrees && std::ranges::count(angles, source.name) > 0) {
-        source.scale *= kRadPerDegree;
+        const auto& [name, unit] = *roles().units.try_emplace(source.name, "deg").first;
+        if (si_unit(config_.source, name, unit).second != kRadPerDegree) {
+          value["angles"].refuse("says \"deg\", but 'units' says " + name + " = \"" + unit + "\"");
+        }
       }
     }
     return pose;
@@ -425,6 +428,19 @@ LogConfig read_log_config(const file::TomlNode& root) {
 
 namespace {
 
+// The unit is of what [log.scale] gives, so factor (about + scale (v − about)) in the same form.
+void convert(const LogConfig& config, double factor, StreamPlan::Source& source) {
+  const double scale = factor * source.scale;
+  if (source.about != 0.0 && factor != 1.0) {
+    if (scale == 1.0) {
+      refuse(config, "log.scale." + source.name,
+             "and the unit together move values by a constant; leave one of them out");
+    }
+    source.about *= factor * (1.0 - source.scale) / (1.0 - scale);
+  }
+  source.scale = scale;
+}
+
 // Sources are converted to the SI, so angles of a converted attitude are in rad. A derivative has
 // the unit of its source, whatever is said of the derivative.
 void convert_sources(const LogConfig& config, const Roles& roles, SamplingPlan& plan) {
@@ -436,7 +452,7 @@ void convert_sources(const LogConfig& config, const Roles& roles, SamplingPlan& 
   for (StreamPlan::Source& source : plan.sources) {
     if (const auto unit = units.find(source.name); unit != units.end()) {
       const double factor = si_unit(config.source, source.name, unit->second).second;
-      source.scale *= factor;  // the unit is of what [log.scale] gives
+      convert(config, factor, source);
       converted.insert(converted.end(), factor != 1.0 ? 1 : 0, source.name);
     }
   }

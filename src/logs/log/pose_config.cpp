@@ -25,14 +25,6 @@ namespace {
   throw InputError({.file = table.source, .field = field}, why);
 }
 
-std::string toml_text(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    safe += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  }
-  return '"' + safe + '"';
-}
-
 // Commands by name; of several readings none.
 std::vector<std::string> commands_of(const Table& table) {
   std::vector<Candidate> likely;

@@ -119,7 +119,7 @@ void mirror(Signal& signal, const ParameterMap& parameters, const std::string& s
                          " is unknown; [log.scale] takes directions by hand");
   }
   for (double& value : signal.values) {
-    value = kNeutralPulseUs + *factor * (value - kNeutralPulseUs);
+    value = mirrored(value, *factor);
   }
 }
 

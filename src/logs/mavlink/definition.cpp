@@ -130,12 +130,8 @@ double number_at(const Field& field, std::span<const std::byte> payload, std::si
 }
 
 std::string text_at(const Field& field, std::span<const std::byte> payload) {
-  std::string text;
-  const std::size_t end = std::min(payload.size(), field.offset + field.count);
-  for (std::size_t at = field.offset; at < end && payload[at] != std::byte{0}; ++at) {
-    text += static_cast<char>(payload[at]);
-  }
-  return text;
+  const std::size_t offset = std::min(payload.size(), field.offset);
+  return wire::text_of(payload.subspan(offset, std::min(payload.size() - offset, field.count)));
 }
 
 }  // namespace kelpie::mavlink

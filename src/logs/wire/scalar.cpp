@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wire/scalar.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
 namespace kelpie::wire {
+
+std::string text_of(std::span<const std::byte> bytes) {
+  const auto* const text = reinterpret_cast<const char*>(bytes.data());  // NOLINT: bytes as text
+  return {text, std::find(text, text + bytes.size(), '\0')};
+}
 
 bool holds(FieldKind kind, double value) {
   if (kind == FieldKind::boolean) {

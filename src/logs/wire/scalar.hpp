@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -109,6 +110,9 @@ inline double number_of(FieldKind kind, std::span<const std::byte> bytes, std::e
     return static_cast<double>(number_at<decltype(zero)>(bytes, order));
   });
 }
+
+/// A text in a fixed number of bytes, up to the first zero.
+std::string text_of(std::span<const std::byte> bytes);
 
 /// Whether the kind can store `value`: integers within range. A float16 is only read.
 bool holds(FieldKind kind, double value);

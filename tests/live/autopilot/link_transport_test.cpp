@@ -27,6 +27,12 @@ using testing::TemporaryFolder;
 using Got = live::Transport::Got;
 using std::chrono::milliseconds;
 
+// Of one value, by anybody.
+Bytes odometry(mavlink::FrameWriter& writer, double vx) {
+  const auto frame = writer.begin("ODOMETRY").set("vx", vx).set("q", 1.0).finish();
+  return {frame.begin(), frame.end()};
+}
+
 // Both ends of a line in one thread: what is written to it is heard by the vehicle at once.
 class VehicleLine final : public autopilot::ByteLine {
  public:
@@ -57,7 +63,6 @@ class VehicleLine final : public autopilot::ByteLine {
   }
   std::deque<std::pair<std::uint16_t, Bytes>> waiting;
 
- private:
   static autopilot::Address address(std::uint16_t port) {
     autopilot::Address address{.bytes = sizeof(sockaddr_in)};
     auto& internet = reinterpret_cast<sockaddr_in&>(address.storage);
@@ -67,6 +72,7 @@ class VehicleLine final : public autopilot::ByteLine {
     return address;
   }
 
+ private:
   Rov& rov_;
   std::uint16_t source_ = 1;
   Bytes bytes_;
@@ -98,6 +104,28 @@ class Link : public ::testing::Test {
         return messages;
       }
     }
+  }
+
+  // Of whole rows within 10 s of the vehicle's time.
+  std::vector<double> pulses_of_rows() {
+    live::Receiver receiver(configuration_, std::nullopt);
+    std::vector<double> pulses;
+    for (int second = 0; second < 10; ++second) {
+      rov_.go(1.0, [&](auto bytes) { line_->add(bytes); });
+      for (bag::Message message;;) {
+        if (link_->next(message, milliseconds(2)) == Got::message) {
+          receiver.receive(link_->topics(), message);
+        } else if (line_->waiting.empty()) {
+          break;
+        }
+        while (const SampleRow* const row = receiver.next()) {
+          if (row->is_whole) {
+            pulses.push_back(row->x[1]);
+          }
+        }
+      }
+    }
+    return pulses;
   }
 
   TemporaryFolder folder_;
@@ -142,24 +170,7 @@ TEST_F(Link, ALearnerMirrorsAReversedMotorOnceItsDirectionIsTold) {
     rov_ = Rov(7);
     rov_.parameters = {{"SERVO1_FUNCTION", 35}, {"MOT_3_DIRECTION", direction}};
     open("", "mirror_motors = true");
-    live::Receiver receiver(configuration_, std::nullopt);
-    std::vector<double> pulses;
-    for (int second = 0; second < 10; ++second) {
-      rov_.go(1.0, [&](auto bytes) { line_->add(bytes); });
-      for (bag::Message message;;) {
-        if (link_->next(message, milliseconds(2)) == Got::message) {
-          receiver.receive(link_->topics(), message);
-        } else if (line_->waiting.empty()) {
-          break;
-        }
-        while (const SampleRow* const row = receiver.next()) {
-          if (row->is_whole) {
-            pulses.push_back(row->x[1]);
-          }
-        }
-      }
-    }
-    return pulses;
+    return pulses_of_rows();
   };
   const std::vector<double> plain = learned(1.0);
   const std::vector<double> mirrored = learned(-1.0);
@@ -168,6 +179,74 @@ TEST_F(Link, ALearnerMirrorsAReversedMotorOnceItsDirectionIsTold) {
   const auto [mirrored_low, mirrored_high] = std::ranges::minmax(mirrored);
   EXPECT_NEAR(mirrored_low, 3000.0 - high, 20.0);
   EXPECT_NEAR(mirrored_high, 3000.0 - low, 20.0);
+}
+
+// Its pulses count µs with 32 bits, which begin anew after 71.6 minutes.
+TEST_F(Link, AVehicleThatHasBeenUpForHoursIsLearnedAsWell) {
+  open();
+  const std::size_t rows = pulses_of_rows().size();
+  ASSERT_GT(rows, 60U);
+  rov_ = Rov(7);
+  rov_.be_up(2.0 * 3600.0);
+  open();
+  EXPECT_NEAR(static_cast<double>(pulses_of_rows().size()), static_cast<double>(rows), 5.0);
+}
+
+// What an autopilot tells while nobody knows whether it is the vehicle is passed on to nobody.
+TEST_F(Link, ParametersToldBeforeTheVehicleIsFoundAreAskedForAgain) {
+  rov_.parameters = {{"SERVO1_FUNCTION", 35}, {"MOT_3_DIRECTION", -1}, {"FRAME_CONFIG", 1}};
+  rov_.rates_hz = {{"ODOMETRY", 0.0}, {"SERVO_OUTPUT_RAW", 0.0}};
+  rov_.refuses_message = "ODOMETRY";
+  open("", "mirror_motors = true");
+  mavlink::FrameWriter writer(7, 1);
+  line_->add(testing::heartbeat_of_vehicle(writer));
+  take();
+  line_->add(writer.begin("PARAM_VALUE").set("param_id", "FRAME_CONFIG").finish());
+  EXPECT_TRUE(take().empty());
+  line_->add(odometry(writer, 0.1));
+  std::map<std::string, int> messages = take();
+  for (int second = 0; second < 2; ++second) {
+    for (const auto& [topic, count] : pass(1.0)) {
+      messages[topic] += count;
+    }
+  }
+  EXPECT_EQ(messages["PARAM_VALUE"], 3);
+  EXPECT_EQ(join_text(rov_.asked_parameters, ","), "SERVO1_FUNCTION,MOT_3_DIRECTION,FRAME_CONFIG");
+}
+
+// A sender that has taken the place of a silent one is no rival of its own.
+TEST(Senders, WhoTakesAPlaceIsNoRival) {
+  autopilot::Senders senders({}, {});
+  mavlink::FrameWriter writer(7, 1);
+  mavlink::FrameParser parser;
+  parser.add(testing::heartbeat_of_vehicle(writer));
+  mavlink::Frame frame;
+  ASSERT_TRUE(parser.next(frame));
+  const autopilot::Senders::Time begin{std::chrono::hours(1)};
+  const auto faults_after = [&](double seconds, std::uint16_t port, bool is_heard) {
+    const auto now = begin + milliseconds(static_cast<int>(1e3 * seconds));
+    EXPECT_EQ(senders.accept(frame, VehicleLine::address(port), true, now), is_heard) << seconds;
+    return join_text(senders.faults(now), "\n");
+  };
+  EXPECT_EQ(faults_after(0.0, 1, true), "");
+  EXPECT_NE(faults_after(1.0, 2, false).find("127.0.0.1:2 is refused"), std::string::npos);
+  EXPECT_EQ(faults_after(8.0, 2, true), "");
+  EXPECT_NE(faults_after(9.0, 3, false).find("127.0.0.1:3 is refused"), std::string::npos);
+}
+
+TEST_F(Link, TheWayOfAVelocityLogTakesAllThreeVelocities) {
+  const auto refusal = [&](const std::string& how) {
+    testing::write_text(folder_ / "x.toml",
+                        rov_config("connection = \"udp:0\"\nvelocity = \"" + how + "\""));
+    configuration_ = live::read_configuration(folder_ / "x.toml", {});
+    return testing::message_of<InputError>(
+        [&] { autopilot::open_link(configuration_, *configuration_.live.mavlink); });
+  };
+  EXPECT_NE(refusal("VISION_POSITION_DELTA")
+                .find("live.mavlink.velocity: VISION_POSITION_DELTA tells the way"),
+            std::string::npos)
+      << refusal("VISION_POSITION_DELTA");
+  EXPECT_EQ(refusal("ODOMETRY"), "");
 }
 
 TEST_F(Link, OnlyTheVehicleIsAskedAndOthersKeepTheirNames) {
@@ -239,12 +318,6 @@ std::string faults_of(const autopilot::LinkTransport& link) {
     text += fault + "\n";
   }
   return text;
-}
-
-// Of one value, by anybody.
-Bytes odometry(mavlink::FrameWriter& writer, double vx) {
-  const auto frame = writer.begin("ODOMETRY").set("vx", vx).set("q", 1.0).finish();
-  return {frame.begin(), frame.end()};
 }
 
 TEST_F(Link, OtherAutopilotsBeforehandDontKeepTheVehicleOut) {

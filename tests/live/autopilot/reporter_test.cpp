@@ -156,6 +156,8 @@ TEST(Reporter, VelocitiesGoAsTheWayOfAVelocityLogOrAsOdometry) {
         EXPECT_NEAR(field("vy"), sign * 0.1, 1e-6);
         EXPECT_NEAR(field("yawspeed"), sign * -0.2, 1e-6);
         EXPECT_TRUE(std::isnan(field("x")));
+        EXPECT_TRUE(std::isnan(field("vz")));  // no state of the model
+        EXPECT_TRUE(std::isnan(field("pitchspeed")));
         EXPECT_NEAR(field("velocity_covariance", 0), 4e-4, 1e-9);   // of u
         EXPECT_TRUE(std::isnan(field("velocity_covariance", 11)));  // of w: unknown
         EXPECT_NEAR(field("velocity_covariance", 20), 1e-4, 1e-9);  // of r

@@ -51,7 +51,9 @@ class Rov {
         send(writer_.set("q", 1.0).finish());
       }
       if (is_due(rates_hz["SERVO_OUTPUT_RAW"])) {
-        writer_.begin("SERVO_OUTPUT_RAW").set("time_usec", std::round(1e6 * t_s_));
+        constexpr double kWrap = 4'294'967'296.0;  // the field has 32 bits
+        writer_.begin("SERVO_OUTPUT_RAW");
+        writer_.set("time_usec", std::fmod(std::round(1e6 * t_s_), kWrap));
         send(writer_.set("servo1_raw", std::round(1500.0 + 40.0 * n)).finish());
       }
     }
@@ -99,6 +101,11 @@ class Rov {
 
   double t_s() const { return t_s_; }
   void restart() { step_ = 0, t_s_ = 0.0; }  ///< The autopilot boots: its time begins anew.
+  /// It has been up for so long.
+  void be_up(double seconds) {
+    step_ = static_cast<std::size_t>(std::round(seconds / kStep));
+    t_s_ = kStep * static_cast<double>(step_);
+  }
 
   std::map<std::string, double> rates_hz{{"ODOMETRY", 4.0}, {"SERVO_OUTPUT_RAW", 2.0}};
   std::map<std::string, int> heard;  ///< messages, by name

@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "format/checkpoint_file.hpp"
 #include "kelpie/core/error.hpp"
+#include "live/checkpoint.hpp"
 #include "live/mission.hpp"
 #include "support.hpp"
 
@@ -65,6 +69,53 @@ TEST(LiveConfiguration, WhatMakesAnotherModelIsInItsIdentity) {
     EXPECT_NE(identity_of(mission_config(log)), fields) << log;
   }
   EXPECT_NE(identity_of(mission_config("", "align = \"none\"")), fields);
+  for (const char* const log : {"scale = {u = 0.01}", "units = {u = \"cm/s\"}", "armed_only = true",
+                                "scale = {n = {by = -1, about = 1500}}"}) {
+    EXPECT_NE(identity_of(mission_config(log)), fields) << log;
+  }
+  EXPECT_EQ(identity_of(mission_config("units = {u = \"m/s\"}")), fields);
+  const auto with_vectors = [&](const std::string& attitude) {
+    return identity_of(
+        "[log]\ninputs = [\"u\"]\ntargets = [\"udot\"]\nrate = 10\n"
+        "vectors = [{columns = [\"u\", \"v\", \"w\"], from = \"NED\", to = \"FRD\"" +
+        attitude +
+        "}]\n[log.derived]\nudot = \"d(u)\"\n[log.states]\nu = \"/a:u\"\nv = \"/a:v\"\n"
+        "w = \"/a:w\"\na = \"/b:a\"\nb = \"/b:b\"\nc = \"/b:c\"\n");
+  };
+  const live::Fields turned = with_vectors(", attitude = [\"a\", \"b\", \"c\"]");
+  EXPECT_NE(with_vectors(", attitude = [\"b\", \"a\", \"c\"]"), turned);
+  EXPECT_NE(with_vectors(", attitude = [\"a\", \"b\", \"c\"], angles = \"deg\""), turned);
+}
+
+// One that does not tell the scales, of an earlier build.
+TEST(LiveConfiguration, AnEarlierCheckpointGoesOnInTheUnitsOfItsLog) {
+  const TemporaryFolder folder;
+  const auto configuration_of = [&](const std::string& log) {
+    testing::write_text(folder / "x.toml", mission_config(log));
+    return live::read_configuration(folder / "x.toml", {});
+  };
+  const live::Configuration plain = configuration_of("");
+  const std::string model = live::model_to_begin_with(plain, {}, std::nullopt).save();
+  live::write_checkpoint(folder.path(), plain,
+                         {.progress = {}, .alignment = {}, .model = model, .file = {}, .note = {}});
+  const auto refusal = [&](const std::string& log) {
+    return message_of<InputError>(
+        [&] { live::find_checkpoint(folder.path(), configuration_of(log)); });
+  };
+  EXPECT_EQ(refusal("units = {u = \"m/s\"}"), "");
+  EXPECT_NE(refusal("units = {u = \"cm/s\"}").find("log.scale.u: is '1' there, '0.01' in this"),
+            std::string::npos);
+  format::Checkpoint earlier = format::find_checkpoint(folder.path())->checkpoint;
+  nlohmann::json header = nlohmann::json::parse(earlier.header);
+  for (const char* const key : {"log.scale.u", "log.scale.n", "log.armed_only"}) {
+    EXPECT_EQ(header["run"].erase(key), 1U);
+  }
+  earlier.header = header.dump();
+  format::write_checkpoint(folder.path(), earlier);
+  EXPECT_EQ(refusal(""), "");
+  EXPECT_NE(refusal("scale = {u = 0.01}").find("log.scale.u: is 'not told' there"),
+            std::string::npos);
+  EXPECT_NE(refusal("armed_only = true").find("log.armed_only"), std::string::npos);
 }
 
 TEST(LiveConfiguration, AnEndpointIsAPortOrAHostAndAPort) {

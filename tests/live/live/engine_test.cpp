@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/seconds.hpp"
@@ -38,7 +39,13 @@ class Vehicle final : public live::Transport {
       : topics_(std::move(topics)), messages_(std::move(messages)) {}
 
   const std::vector<bag::Topic>& topics() const override { return topics_; }
+  bool ends = true;
+
   Got next(bag::Message& message, std::chrono::milliseconds /*timeout*/) override {
+    if (at_ == messages_.size() && !ends) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return Got::nothing;
+    }
     if (at_ == messages_.size()) {
       return Got::end;
     }
@@ -329,6 +336,46 @@ TEST_F(Live, ADamagedThrusterLosesAuthority) {
   EXPECT_NE(said_.find("of nominal left"), std::string::npos) << said_;
   // 0.25 · 0.01 · 20² m/s² ahead against 2 u² + 0.3 u.
   EXPECT_NEAR(health.learner.held_current, 0.63, 0.05);
+}
+
+// An operator hears of a learner that has failed, though messages never end.
+TEST_F(Live, ALearnerThatFailsEndsTheRun) {
+  class Failing final : public live::Output {
+   public:
+    void learned(const live::LearnedSample& /*sample*/) override { throw Failure("no more room"); }
+  };
+  testing::write_text(folder_ / "x.toml", mission_config("clock = \"header\"", "align = \"none\""));
+  const live::Configuration configuration = live::read_configuration(folder_ / "x.toml", {});
+  Vehicle vehicle(testing::mission_topics(), little_mission(80.0));
+  vehicle.ends = false;
+  live::Outputs outputs;
+  Failing failing;
+  outputs.add(failing);
+  live::Engine engine(configuration, folder_.path(), vehicle, std::nullopt, outputs, requests_);
+  constexpr int kEnough = 20'000;
+  int asked = 0;
+  const std::string why = testing::message_of<Failure>([&] {
+    engine.run([&] {
+      return ++asked < kEnough ? live::Engine::Action::proceed : live::Engine::Action::stop;
+    });
+  });
+  EXPECT_EQ(why, "no more room");
+  EXPECT_LT(asked, kEnough);
+}
+
+TEST(Authority, IsUnknownOnceItsDiagnosisIs) {
+  StreamPlan plan;
+  plan.inputs = {"u", "n"};
+  plan.targets = {"udot"};
+  std::string said;
+  Samples samples;
+  Listener listener(said, samples);
+  live::LearnerHealth health;
+  health.authority = "u: 25 % of nominal left";
+  health.held_current = 0.6;
+  live::AuthorityReporter(plan).update(nullptr, {}, 0.0, health, listener);
+  EXPECT_EQ(health.authority, "");
+  EXPECT_TRUE(std::isnan(health.held_current));
 }
 
 TEST_F(Live, BytesThatAreNoMessageDoNoHarm) {

@@ -11,10 +11,14 @@
 #include <thread>
 #include <tuple>
 
+#include "bag/autopilot_state.hpp"
+#include "bag/mcap_reader.hpp"
 #include "bag/reader.hpp"
 #include "kelpie/core/random.hpp"
 #include "live/mission.hpp"
 #include "live/tuning.hpp"
+#include "mavlink/frame_parser.hpp"
+#include "mavlink/frame_writer.hpp"
 #include "plain_user.hpp"
 #include "support.hpp"
 
@@ -44,6 +48,58 @@ TEST(Recorder, WhatItWritesIsABagOfAllThatCame) {
     ASSERT_EQ(content.messages[i].data, messages[i].data);
     ASSERT_EQ(content.messages[i].receive_ns, messages[i].receive_ns);
   }
+}
+
+// A vehicle tells its parameters once; every file of a recording has all of them.
+TEST(Recorder, ANewFileBeginsWithTheParametersAsLastTold) {
+  const TemporaryFolder folder;
+  const std::vector<bag::Topic> topics{
+      {.name = "ATTITUDE", .type = "ATTITUDE", .encoding = "mavlink"},
+      {.name = "PARAM_VALUE", .type = "PARAM_VALUE", .encoding = "mavlink"}};
+  mavlink::FrameWriter writer(1, 1);
+  mavlink::FrameParser parser;
+  live::ParameterMessages told;
+  std::int64_t time_ns = testing::kSecond;
+  const auto message_with = [&](std::size_t topic, std::span<const std::byte> bytes,
+                                const std::function<void(const bag::Message&)>& use) {
+    parser.add(bytes);
+    mavlink::Frame frame;
+    ASSERT_TRUE(parser.next(frame));
+    time_ns += testing::kSecond;
+    use({.topic = topic, .receive_ns = time_ns, .publish_ns = time_ns, .data = frame.payload});
+  };
+  live::Recorder first(folder / "rec", {});
+  first.begin_with(told);
+  const auto tell = [&](const char* name, double value) {
+    writer.begin("PARAM_VALUE").set("param_id", name).set("param_value", value);
+    message_with(1, writer.finish(), [&](const bag::Message& message) {
+      first.write(topics, message);
+      told.hear(topics, message);
+    });
+  };
+  tell("MOT_1_DIRECTION", 1.0);
+  tell("FRAME_CONFIG", 2.0);
+  tell("MOT_1_DIRECTION", -1.0);
+  first.finish();
+  live::Recorder second(folder / "rec", {});
+  second.begin_with(told);
+  for (int k = 0; k < 2; ++k) {
+    message_with(0, writer.begin("ATTITUDE").set("roll", 0.5).finish(),
+                 [&](const bag::Message& message) { second.write(topics, message); });
+  }
+  second.finish();
+  const std::string text = testing::read_text(folder / "rec" / "live_0002.mcap");
+  const auto bag = bag::read_mcap(std::as_bytes(std::span(text)), "x.mcap", bag::ReadMode::strict);
+  bag::AutopilotState state;
+  std::vector<std::int64_t> times_ns;
+  for (bag::Message message; bag->next(message);) {
+    state.hear(bag->topics(), message);
+    times_ns.push_back(message.receive_ns);
+  }
+  EXPECT_EQ(state.parameters(),
+            (std::map<std::string, double>{{"FRAME_CONFIG", 2.0}, {"MOT_1_DIRECTION", -1.0}}));
+  ASSERT_EQ(times_ns.size(), 4U);
+  EXPECT_EQ(times_ns.front(), times_ns[2]);  // of the file's time, not of hours ago
 }
 
 // While it lives no file of this process grows beyond its bytes.

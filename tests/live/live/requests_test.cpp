@@ -287,6 +287,67 @@ TEST_F(LiveRequests, ResetItBeginsAnewAndIsAsGoodAgain) {
   EXPECT_GT(engine_->health().learner.axes[0].r2, 0.5);
 }
 
+// The model of an earlier drive is read once, at the start: its file may be gone by a reset.
+TEST_F(LiveRequests, ResetItBeginsWithWhatWasKnownAtTheStart) {
+  prepare();
+  run();
+  const fs::path nominal = folder_ / "nominal.json";
+  fs::rename(out() / "model.json", nominal);
+  configure("align = \"none\"\nnominal = \"" + nominal.string() + "\"");
+  vehicle_.begin();
+  prepare();
+  fs::remove(nominal);
+  ask(vehicle_.late(), Request::reset);
+  run();
+  EXPECT_NEAR(static_cast<double>(engine_->health().learner.learned), 300.0, 20.0);
+}
+
+TEST_F(LiveRequests, ResetNoModelOfBeforeIsLeftAndASaveSaysSo) {
+  prepare();
+  bool was_there = false;
+  bool is_there = true;
+  ask(vehicle_.middle(), Request::save, [&] { was_there = fs::exists(out() / "model.json"); });
+  ask(vehicle_.late(), Request::reset, [&] {
+    is_there = fs::exists(out() / "model.json");
+    requests_.push(Request::save);
+    wait(vehicle_.late(), "saved, after 0 samples; no model is ready yet", [] {});
+  });
+  run();
+  EXPECT_TRUE(was_there);
+  EXPECT_FALSE(is_there);
+  EXPECT_FALSE(model().empty());  // of the samples since
+}
+
+// A replay that goes on shows rows that the checkpoint has learned; the wish comes among these.
+TEST_F(LiveRequests, FrozenWhileItRepeatsWhatIsKnownItIsOnTheDiskSoonAfter) {
+  configure("align = \"none\"\ncheckpoint = 1000");
+  testing::write_text(folder_ / "x.mcap",
+                      testing::mcap_of(testing::mission_topics(), little_mission(120.0)));
+  const log::LogSource recording{.path = folder_ / "x.mcap"};
+  const auto run_until = [&](std::size_t rows, bool& is_paused) {
+    engine_->run([&] {
+      if (engine_->learner().rows_taken() < rows) {
+        return live::Engine::Action::proceed;
+      }
+      const auto saved = live::find_checkpoint(out(), configuration_);
+      is_paused = saved && saved->progress.is_paused;
+      return live::Engine::Action::stop;
+    });
+  };
+  bool is_paused = false;
+  live::Replay first(recording, configuration_, std::numeric_limits<double>::infinity());
+  prepare(first);
+  run_until(300, is_paused);
+  const std::size_t known = live::find_checkpoint(out(), configuration_)->progress.rows;
+  ASSERT_GE(known, 300U);
+  EXPECT_FALSE(is_paused);
+  live::Replay second(recording, configuration_, std::numeric_limits<double>::infinity());
+  prepare(second, true);
+  requests_.push(Request::freeze);
+  run_until(known + 20, is_paused);
+  EXPECT_TRUE(is_paused);
+}
+
 // Checked by the preset `threads` as well: the model is replaced while another thread predicts.
 TEST_F(LiveRequests, WhileItIsResetPredictionsAreThoseOfTheModelBeforeOrNone) {
   const std::vector<double> x{0.2, 5.0};

@@ -83,6 +83,16 @@ std::string data_of(const std::string& text, const std::string& event) {
   return text.substr(begin, text.find('\n', begin) - begin);
 }
 
+TEST_F(WebPage, ACountThatIsUnknownIsNull) {
+  page_->health({});
+  const std::string told = heard([](const std::string& text) {
+    return text.find("event: health") != std::string::npos && text.ends_with("\n\n");
+  });
+  const auto health = nlohmann::json::parse(data_of(told, "health"));
+  EXPECT_TRUE(health["parameters_asked"].is_null()) << health["parameters_asked"];
+  EXPECT_EQ(health["learned"], 0);
+}
+
 TEST_F(WebPage, IsOneDocumentThatAsksNobodyElse) {
   const auto answer = client().get("/");
   EXPECT_EQ(answer.status, 200);

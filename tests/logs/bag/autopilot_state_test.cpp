@@ -45,6 +45,17 @@ TEST(AutopilotState, BothRecordingsTellParametersAndArmedMotors) {
   }
 }
 
+// A faulty sender, or a hostile one.
+TEST(AutopilotState, AnyNumberOfNamesFillsNoMemory) {
+  std::map<std::string, double> parameters;
+  for (int k = 0; k < 10'000; ++k) {
+    bag::keep_parameter(parameters, "P" + std::to_string(k), k);
+  }
+  EXPECT_LE(parameters.size(), 4096U);
+  bag::keep_parameter(parameters, "P7", -7.0);
+  EXPECT_EQ(parameters.at("P7"), -7.0);
+}
+
 TEST(AutopilotState, MessagesBeforeTheFirstHeartbeatCountAsDisarmed) {
   mavlink::FrameWriter writer(1, 1);
   testing::Tlog log;

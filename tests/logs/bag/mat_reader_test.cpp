@@ -9,9 +9,12 @@
 #include "bag/bags.hpp"
 #include "bag/hash.hpp"
 #include "bag/inspect.hpp"
+#include "bag/mat_elements.hpp"
 #include "bag/mat_topics.hpp"
+#include "bag/mats.hpp"
 #include "bag/open_bag.hpp"
 #include "bag/series.hpp"
+#include "kelpie/core/error.hpp"
 #include "support.hpp"
 
 #ifdef KELPIE_WITH_MATIO
@@ -42,6 +45,23 @@ std::vector<std::string> names_of(const std::vector<MatTopic>& topics) {
 }
 
 using Names = std::vector<std::string>;
+
+// 2^40 structs of 2^24 fields: their product has 64 zeros.
+TEST(MatElements, ANumberOfStructsThatOverflowsIsRefused) {
+  using testing::mat_element;
+  using testing::mat_raw;
+  constexpr std::uint32_t kStruct = 2;
+  const std::string content =
+      mat_element(6, mat_raw(kStruct) + mat_raw(std::uint32_t{0})) +
+      mat_element(5, mat_raw(std::uint32_t{1U << 20U}) + mat_raw(std::uint32_t{1U << 20U})) +
+      mat_element(1, "s") + mat_element(5, mat_raw(std::uint32_t{1})) +
+      mat_element(1, std::string(1U << 24U, 'a'));
+  const std::string file = testing::mat_head() + mat_element(14, content);
+  std::string why;
+  bag::sound_mat_variables(std::as_bytes(std::span(file)), "x.mat",
+                           [&](const InputError& error) { why = error.what(); });
+  EXPECT_NE(why.find("can't hold"), std::string::npos) << why;
+}
 
 TEST(MatTopics, WhatHasTheLengthOfATimeBelongsToIt) {
   const std::vector<MatArray> arrays{

@@ -138,6 +138,12 @@ TEST(MessageType, TypesThatGrowWithoutEndAreRefused) {
             std::string::npos);
 }
 
+TEST(MessageType, ANameOfAFieldIsNotLongerThanPeopleWrite) {
+  EXPECT_EQ(refusal("int8 " + std::string(200, 'a') + "\n"), "");
+  EXPECT_NE(refusal("int8 " + std::string(201, 'a') + "\n").find("longer than 200 bytes"),
+            std::string::npos);
+}
+
 TEST(MessageType, NamesOfTypesAreNoPaths) {
   const TemporaryFolder folder;
   const bag::MessageDefinitions definitions(folder.path());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -68,6 +69,50 @@ TEST(TlogReader, ACounterOfMicrosecondsThatBeginsAnewIsCountedOn) {
       series_of(log, {"SERVO_OUTPUT_RAW:servo1_raw"}, bag::Clock::header);
   EXPECT_EQ(series[0].times_ns, (std::vector<std::int64_t>{4'294'960'000'000, 4'294'966'000'000,
                                                            4'294'968'296'000, 4'294'988'296'000}));
+}
+
+// A vehicle is up for two hours when recording begins: its pulses have the time of its attitude.
+TEST(TlogReader, ACounterOfMicrosecondsThatHasBegunAnewHasTheTimeOfItsSender) {
+  constexpr double kUpS = 7'200.0;
+  constexpr double kWrap = 4'294'967'296.0;
+  for (const std::uint8_t component : {std::uint8_t{1}, std::uint8_t{2}}) {
+    mavlink::FrameWriter writer(1, component);
+    mavlink::FrameWriter vehicle(1, 1);
+    Tlog log;
+    log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(vehicle));
+    for (int k = 0; k < 20; ++k) {
+      const double t = kUpS + 0.1 * k;
+      const std::uint64_t received_us = kTlogBeginUs + 100'000U * static_cast<std::uint64_t>(k);
+      writer.begin("SERVO_OUTPUT_RAW").set("time_usec", std::fmod(std::round(1e6 * t), kWrap));
+      log.add(received_us, writer.finish());
+      writer.begin("ATTITUDE").set("time_boot_ms", std::round(1e3 * t)).set("roll", 0.1 * k);
+      log.add(received_us, writer.finish());
+    }
+    const std::string sender = component == 1 ? "" : "/mavlink/1/2/";
+    const std::vector<bag::Series> series =
+        series_of(log, {sender + "SERVO_OUTPUT_RAW:servo1_raw", sender + "ATTITUDE:roll"},
+                  bag::Clock::header);
+    ASSERT_EQ(series[0].times_ns.size(), 19U);  // the first comes before any time
+    ASSERT_EQ(series[1].times_ns.size(), 20U);
+    for (std::size_t k = 0; k < 19; ++k) {
+      EXPECT_EQ(series[0].times_ns[k], series[1].times_ns[k + 1]);
+    }
+  }
+}
+
+TEST(TlogReader, ACounterOfMicrosecondsDoesNotWaitForeverForItsSender) {
+  mavlink::FrameWriter writer(1, 1);
+  Tlog log;
+  log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(writer));
+  for (std::uint64_t k = 0; k < 10; ++k) {
+    writer.begin("SERVO_OUTPUT_RAW").set("time_usec", 1e6 * static_cast<double>(k));
+    log.add(kTlogBeginUs + 1'000'000 * k, writer.finish());
+  }
+  writer.begin("ATTITUDE").set("time_boot_ms", 9'000);
+  log.add(kTlogBeginUs + 9'000'000, writer.finish());
+  EXPECT_EQ(series_of(log, {"SERVO_OUTPUT_RAW:servo1_raw", "ATTITUDE:roll"}, bag::Clock::header)[0]
+                .times_ns.front(),
+            std::int64_t{6'000'000'000});
 }
 
 TEST(TlogReader, ZerosLeftOutArraysAndExtensionsAreRead) {
@@ -171,6 +216,22 @@ TEST(TlogReader, AWrongChecksumCostsItsFrameAloneAndIsCounted) {
   EXPECT_THROW(bag::inspect_bag(*bag::read_tlog(log.bytes(), "x.tlog", ReadMode::usual),
                                 bag::MessageDefinitions()),
                InputError);
+}
+
+// Nobody knows how many messages lay behind it.
+TEST(TlogReader, AWrongChecksumWithoutAFrameBehindItIsDamage) {
+  Tlog log = small_tlog(20);
+  const std::size_t offset = log.offsets()[5];
+  log.bytes()[offset + 9] = std::byte{200};  // bytes of its payload
+  EXPECT_NE(testing::message_of<InputError>([&] {
+              bag::inspect_bag(*bag::read_tlog(log.bytes(), "x.tlog", ReadMode::usual),
+                               bag::MessageDefinitions());
+            }).find("offset " + std::to_string(offset)),
+            std::string::npos);
+  const auto bag = bag::read_tlog(log.bytes(), "x.tlog", ReadMode::recover);
+  const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
+  EXPECT_EQ(report.loss_count, 1U);
+  EXPECT_EQ(report.messages, 20U);
 }
 
 TEST(TlogReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {

@@ -13,6 +13,8 @@
 #include "bag/packed_bytes.hpp"
 #include "bag/read_bytes.hpp"
 #include "bag/series.hpp"
+#include "bag/ulog_messages.hpp"
+#include "kelpie/core/error.hpp"
 #include "support.hpp"
 
 namespace kelpie::ulog_reader_test {
@@ -253,6 +255,27 @@ TEST(UlogReader, HostileFormatsCannotBeDecodedAndDoNoHarm) {
   }
   log.add(format("z:bool x;")).add(subscribe(0, 0, "a")).add(data(0, accel(1, 1.0F)));
   EXPECT_FALSE(reader.report_of(log.bytes()).topics[0].not_decoded.empty());
+}
+
+TEST(UlogReader, FormatsWithinFormatsWithoutEndAreLeftOut) {
+  constexpr int kFormats = 200'000;
+  bag::UlogFormats formats;
+  for (int k = 0; k < kFormats; ++k) {
+    formats["t" + std::to_string(k)] = "uint64_t timestamp;t" + std::to_string(k + 1) + " next;";
+  }
+  const std::string definition = bag::ulog_definition("t0", formats);
+  EXPECT_NE(definition.find("t32:"), std::string::npos);
+  EXPECT_LT(definition.size(), 10'000U);
+  const bag::MessageDefinitions none;
+  const auto refusal = [&](const std::string& text) {
+    return testing::message_of<InputError>([&] {
+      bag::ulog_type_of({.name = "t", .type = "t0", .encoding = "ulog", .definition = text}, none);
+    });
+  };
+  EXPECT_NE(refusal(definition).find("more than 32 deep"), std::string::npos);
+  EXPECT_EQ(refusal("t0:float " + std::string(200, 'a') + ";"), "");
+  EXPECT_NE(refusal("t0:float " + std::string(201, 'a') + ";").find("longer than 200 bytes"),
+            std::string::npos);
 }
 
 TEST(UlogReader, AnyBytesEndInMessagesOrAnInputError) {

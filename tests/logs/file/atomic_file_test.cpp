@@ -119,6 +119,29 @@ TEST(AtomicFile, ALinkStaysALink) {
   EXPECT_EQ(content_of(folder / "sub" / "real"), "new");
 }
 
+TEST(AtomicFile, TheContentKeptOfALinkIsTheOldOne) {
+  const fs::path memory = "/dev/shm";  // a file system of its own
+  for (const bool is_elsewhere : {false, true}) {
+    if (is_elsewhere && !fs::is_directory(memory)) {
+      GTEST_SKIP() << "there is no second file system";
+    }
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "sub");
+    const fs::path real =
+        is_elsewhere ? memory / folder.path().filename() : folder / "sub" / "real";
+    file::write_file_whole(real, "first");
+    fs::create_symlink(real, folder / "link");
+    for (const char* const content : {"second", "third"}) {
+      file::write_file_keeping(folder / "link", content, folder / "previous");
+    }
+    EXPECT_TRUE(fs::is_symlink(folder / "link"));
+    EXPECT_EQ(content_of(real), "third");
+    EXPECT_EQ(content_of(folder / "previous"), "second");
+    EXPECT_EQ(entries(folder.path()), 3U);
+    fs::remove(real);
+  }
+}
+
 TEST(AtomicFile, ALeftOverDraftIsNoObstacle) {
   const TemporaryFolder folder;
   // The drafts a killed process of our number would have left, whatever it had counted to.

@@ -29,6 +29,18 @@ TEST(Commands, TakesConstantsAndConstantColumns) {
   EXPECT_EQ(rated.times_s, (std::vector<double>{0.0, 0.25}));
 }
 
+TEST(Commands, TimesAreInTheUnitOfTheirColumn) {
+  const std::vector<double> seconds{0.0, 0.1, 0.3};
+  EXPECT_EQ(
+      log::make_commands(table("t [ms],n\n0,3\n100,3\n300,4\n"), {.inputs = {"n"}}, {}).times_s,
+      seconds);
+  log::Table told = table("t,n\n0,3\n100,3\n300,4\n");
+  log::convert_units(told, {{"t", "ms"}});
+  EXPECT_EQ(log::make_commands(told, {.inputs = {"n"}}, {}).times_s, seconds);
+  EXPECT_NE(refusal("t [m],n\n0,3\n1,3\n", {.inputs = {"u", "n"}}).find("not a unit of time"),
+            std::string::npos);
+}
+
 TEST(Commands, RefusesWhatCantBeFollowedNamingTheLine) {
   const log::Roles roles{.inputs = {"u", "n"}};
   EXPECT_EQ(refusal("t,n\n0,3\n1,\n", roles), "c.csv:3: n: nan where a finite number is needed");

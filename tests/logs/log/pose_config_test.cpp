@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/pose_config.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -121,6 +122,41 @@ TEST_F(PoseConfig, TablesListsAndOptionsMeanTheSame) {
     EXPECT_TRUE(same_bits(column(list, name), column(states, name))) << name;
     EXPECT_TRUE(same_bits(column(list, name), column(option, name))) << name;
   }
+}
+
+TEST_F(PoseConfig, AnglesInDegreesAreConvertedOnceWhateverElseIsSaidOfThem) {
+  const PoseLog truth(60.0);
+  std::string csv = "t,x,y,psi,n,m\n";
+  std::string in_degrees = csv;
+  for (const PoseLog::Sample& one : truth.samples) {
+    const auto row = [&](double psi) {
+      return fmt::format("{:.9g},{:.9g},{:.9g},{:.12g},{:.9g},{:.9g}\n", one.t, one.x, one.y, psi,
+                         one.n, one.m);
+    };
+    csv += row(one.psi);
+    in_degrees += row(one.psi * 180.0 / 3.14159265358979323846);
+  }
+  const std::string head = "[log]\ntime = \"t\"\nrate = 5\nwindow = 1.5\n";
+  const std::string pose = "pose = {x = \"x\", y = \"y\", yaw = \"psi\"";
+  const log::Log plain = read(csv, head + pose + "}\n" + kCommands);
+  for (const char* const more : {"", "units = {yaw = \"deg\"}\n", "scale = {yaw = 1}\n"}) {
+    const log::Log log = read(in_degrees, head + more + pose + ", angles = \"deg\"}\n" + kCommands);
+    std::size_t known = 0;
+    for (const char* const name : {"u", "r"}) {
+      for (std::size_t row = 0; row < log.table.rows(); ++row) {
+        const double expected = column(plain, name)[row];
+        const double found = column(log, name)[row];
+        known += std::isfinite(found) ? 1 : 0;
+        EXPECT_TRUE(std::isnan(expected) ? std::isnan(found) : std::abs(found - expected) < 1e-6)
+            << more << name << row;
+      }
+    }
+    EXPECT_GT(known, 400U);
+  }
+  EXPECT_NE(
+      refusal(csv, head + "units = {yaw = \"rad\"}\n" + pose + ", angles = \"deg\"}\n" + kCommands)
+          .find("but 'units' says yaw = \"rad\""),
+      std::string::npos);
 }
 
 TEST_F(PoseConfig, DegreesTurnsAndMissingCellsAreNoMatter) {

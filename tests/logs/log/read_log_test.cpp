@@ -132,6 +132,26 @@ TEST_F(ReadLog, UnitsOfMotionAreConvertedInTablesAndInSamples) {
   EXPECT_EQ(sampled.units.at("udot"), "m s^-1/s");
 }
 
+// 100 + 0.5 (v - 100) cm/s.
+TEST_F(ReadLog, AUnitIsOfWhatTheScaleGives) {
+  const std::string file = write("log.csv", "t,b,d\n0,100,2\n0.5,150,2\n1,200,3\n1.5,250,2\n");
+  const auto config = [](const std::string& by, const std::string& unit) {
+    return "[log]\nrate = 2\ntime = 't'\ndegree = 1\nwindow = 2\n[log.states]\nu = 'b'\n"
+           "[log.commands]\nn = 'd'\n[log.derived]\nudot = 'd(u)'\n"
+           "[log.units]\nu = '" +
+           unit + "'\n[log.scale]\nu = {by = " + by + ", about = 100}\n";
+  };
+  for (const auto& [by, unit, expected] :
+       {std::tuple("0.5", "cm/s", 1.25), std::tuple("1", "cm/s", 1.5),
+        std::tuple("0.5", "m/s", 125.0)}) {
+    EXPECT_NEAR(read(file, config(by, unit)).table.columns[1][1], expected, 1e-9) << by << unit;
+  }
+  EXPECT_NE(testing::message_of<InputError>([&] {
+              read(file, config("100", "cm/s"));
+            }).find("log.scale.u: and the unit together move values by a constant"),
+            std::string::npos);
+}
+
 TEST_F(ReadLog, ATableWithRawColumnsIsServedAlike) {
   std::string text = "stamp,speed_x,rpm\n";
   for (int k = 0; k < 200; ++k) {
