@@ -75,6 +75,9 @@ MECHANISMS = {
     "changes beside constant errors": ("model/change_monitor.cpp",
                                        "(start.over_constant > kChange.over_constant &&",
                                        "(start.over_constant >= 0.0 &&"),
+    "errors by the size of effects": ("model/errors_by_effect.cpp",
+                                      "const std::size_t last = octave(effect);",
+                                      "const std::size_t last = 0 * octave(effect);"),
 }
 
 

@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 SOURCE = Path(__file__).parents[2] / "lab" / "random_vehicles.py"
 SPEC = importlib.util.spec_from_file_location("random_vehicles", SOURCE)
@@ -44,3 +45,14 @@ def test_one_of_two_thrusters_without_thrust_is_no_load(build_dir, tmp_path):
     named = [cause for finding in result["diagnosis"]["findings"] for cause in finding["causes"]]
     assert [(cause["kind"], cause["column"]) for cause in named] == [("thruster", "c1")], named
     assert named[0]["size"] < 0.6
+
+
+@pytest.mark.parametrize("seed", [99001, 99004, 99011])
+def test_a_vehicle_that_does_not_change_is_not_believed_to_change(seed, build_dir, tmp_path):
+    """Calm minutes have other errors than manoeuvres; a thruster gives no less than nothing."""
+    vehicle = random_vehicles.Vehicle(seed)
+    rows = vehicle.log(changes=False)
+    held = np.arange(len(rows)) * 25 // len(rows) % 5 == 4
+    random_vehicles.learn(build_dir / "kelpie", tmp_path, rows, held, vehicle)
+    result = json.loads((tmp_path / "learned" / "result.json").read_text())
+    assert [axis["changes"] for axis in result["axes"]] == [[], [], []]
