@@ -39,7 +39,7 @@ std::vector<Outage> plan_outages(const log::Dataset& data, const study::Split& s
     for (std::size_t k = 0; k < plan.outages_s.size(); ++k) {
       const double seconds = plan.outages_s[k];
       for (const std::size_t start :
-           study::starts_in(data, stretch, std::max(0.5 * seconds, 1.0))) {
+           study::starts_in(data.times_s, stretch, std::max(0.5 * seconds, 1.0))) {
         const std::size_t end = study::row_after(data, stretch, start, seconds);
         if (end < stretch.end) {
           outages.push_back({start, end, k});

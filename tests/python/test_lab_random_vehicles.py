@@ -47,7 +47,7 @@ def test_one_of_two_thrusters_without_thrust_is_no_load(build_dir, tmp_path):
     assert named[0]["size"] < 0.6
 
 
-@pytest.mark.parametrize("seed", [99001, 99004, 99011])
+@pytest.mark.parametrize("seed", [99001, 99002, 99004, 99011])
 def test_a_vehicle_that_does_not_change_is_not_believed_to_change(seed, build_dir, tmp_path):
     """Calm minutes have other errors than manoeuvres; a thruster gives no less than nothing."""
     vehicle = random_vehicles.Vehicle(seed)

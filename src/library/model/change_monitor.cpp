@@ -18,8 +18,8 @@ constexpr const auto& kChange = kModelTuning.change;
 constexpr double kKept = kOnline.members.kept;
 constexpr double kBefore = -std::numeric_limits<double>::infinity();  // of all times [s]
 
-// A factor that a thruster may have, within the errors of a factor.
-bool is_thrust(double factor) {
+// Of a thruster's effect, or of drag, within the errors of a factor.
+bool is_possible_factor(double factor) {
   return factor >= -kChange.named_deviation && factor <= kChange.most_gain;
 }
 
@@ -254,9 +254,10 @@ void ChangeMonitor::observe(ChangeStart& start, std::span<const double> y, bool 
 // Slow drifts, which a model follows anyway, gain less of a sample; what constant errors do not
 // explain at all is no drift.
 bool ChangeMonitor::is_clear(const ChangeStart& start) const {
-  return (start.over_constant > kChange.enough && has_likely_cause(start)) ||
-         (start.over_constant > kChange.over_constant &&
-          start.evidence > kChange.clear * start.samples);
+  const double per_sample = start.evidence / start.samples;
+  return (start.over_constant > kChange.over_constant && per_sample > kChange.clear) ||
+         (start.over_constant > kChange.enough && per_sample > kChange.likely &&
+          has_likely_cause(start));
 }
 
 const ChangeStart* ChangeMonitor::most_evident() const {
@@ -316,7 +317,7 @@ ChangeStart& ChangeMonitor::start_before(double since_s) {
 std::optional<std::size_t> ChangeMonitor::command_of(const Cause& cause) const {
   const auto found = std::ranges::find(gains_, cause.place, &CommandGain::input);
   const auto command = static_cast<std::size_t>(found - gains_.begin());
-  const bool follows = cause.kind == CauseKind::thruster && is_thrust(cause.size) &&
+  const bool follows = cause.kind == CauseKind::thruster && is_possible_factor(cause.size) &&
                        found != gains_.end() && scales_[command];
   return follows ? std::optional(command) : std::nullopt;
 }
@@ -349,15 +350,15 @@ std::optional<std::size_t> ChangeMonitor::clear_command(const ChangeStart& start
   return clear ? std::optional(command) : std::nullopt;
 }
 
-// One cause that explains most of what all causes together explain, and that a vehicle may have: a
-// thruster may give nothing, but no vehicle is without drag, or ten times as heavy. A calm minute
-// with other errors than a manoeuvre has looks so.
+// One cause that explains most of what all causes together explain, and that a vehicle may have.
+// Not inertia, which scales all effects: so does a calm minute with other errors than a manoeuvre.
 bool ChangeMonitor::has_likely_cause(const ChangeStart& start) const {
   const auto lone = std::ranges::max_element(start.lone, {}, &LoneCause::likelihood);
-  const bool is_command = lone - start.lone.begin() < static_cast<std::ptrdiff_t>(commands_);
-  const double factor = 1.0 + lone->size;
-  return lone->likelihood >= kChange.main_share * start.likelihood && is_thrust(factor) &&
-         (is_command || factor * kChange.most_gain >= 1.0);
+  const auto cause = static_cast<std::size_t>(lone - start.lone.begin());
+  const bool is_inertia =
+      (cause >= commands_ + axes() && cause < causes()) || cause == causes() + 1;
+  return !is_inertia && is_possible_factor(1.0 + lone->size) &&
+         lone->likelihood >= kChange.main_share * start.likelihood;
 }
 
 // gains_ leads from the commands' factors in service to those of the start; null: of before the

@@ -161,6 +161,7 @@ inline constexpr struct ModelTuning {
     double enough = 40.0;            ///< nats; without a change up to 39
     double over_usual = 2.0;         ///< times the largest evidence of former starts; from 1.5, 2
     double clear = 0.45;             ///< nats per sample: 40 % of the errors' variance is left
+    double likely = 0.3;             ///< the same of one likely cause, with enough over constants
     double constant_errors = 10.0;   ///< usual errors, deviation of a constant error; by hand
     double over_constant = 5.0;      ///< nats over constant errors: very strong (Kass & Raftery)
     double usual_memory_s = 1800.0;  ///< s, of this evidence; by hand

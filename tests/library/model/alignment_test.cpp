@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <span>
@@ -63,7 +64,9 @@ TEST(AlignedRows, TakesTheNearestCommandsOfTheSameStretchAndKeepsTheRest) {
 
 // A lag runs forwards only: where the clock steps back, a new stretch begins.
 TEST(AlignedRows, AnActuatorBeginsAnewWhereTheClockStepsBack) {
-  AlignedRows rows(0, {1}, 2, 1, 10.0, {{.lag_s = 0.2}});
+  Actuator slow;
+  slow.lag_s = 0.2;
+  AlignedRows rows(0, {1}, 2, 1, 10.0, std::array{slow});
   for (const double from_s : {10.0, 0.0}) {
     for (int i = 0; i < 20; ++i) {
       const std::vector<double> x{0.0, i % 5 < 2 ? 1.0 : -1.0};
