@@ -155,7 +155,12 @@ void ChangeMonitor::learn(std::span<const double> y) {
   samples_ += weight;
   for (std::size_t a = 0; std::isfinite(leverage_) && a < axes(); ++a) {
     const double error = error_[a] / std::sqrt(1.0 + leverage_);
-    scatter_[a].add(error, effect_[a], rows_ % kChange.error_every == 0);
+    if (rows_ % kChange.error_every == 0) {
+      scatter_[a].add(error);
+    }
+    if (known()) {
+      scatter_[a].add_with(error, effect_[a]);
+    }
     if (std::isfinite(usual_error_[a]) && usual_error_[a] > 0.0) {
       correlation_[a].add(
           std::clamp(error / usual_error_[a], -kChange.clip_errors, kChange.clip_errors));

@@ -36,7 +36,9 @@ namespace kelpie {
 /// made before a row is learned, summed over rows and axes. τ rows count as one independent sample
 /// (ErrorCorrelation), and no sample counts more than 1.5 nats. A change is believed where the
 /// evidence exceeds 40 nats and twice the largest evidence of starts without a change, and 0.45
-/// nats per independent sample: slow drifts, which a model follows anyway, gain less.
+/// nats per independent sample (0.3 with one likely cause): slow drifts, which a model follows
+/// anyway, gain less. The usual error of a row is that of rows with effects of this size
+/// (ErrorsByEffect).
 ///
 /// From then on the fit stands still, the start goes on learning for a minute, and the coefficients
 /// follow. Another minute later the vehicle with the change is the vehicle without a change.

@@ -13,10 +13,7 @@ std::size_t ErrorsByEffect::octave(double effect) const {
   return octaves >= 1.0 ? static_cast<std::size_t>(std::min(octaves, kLast)) : 0;
 }
 
-void ErrorsByEffect::add(double error, double effect, bool usual) {
-  if (usual) {
-    all_.add(error);
-  }
+void ErrorsByEffect::add_with(double error, double effect) {
   if (std::isfinite(value()) && value() > 0.0) {
     by_octave_[octave(effect)].add(error);
   }
@@ -31,6 +28,11 @@ double ErrorsByEffect::ratio(double effect) const {
   for (std::size_t k = 0; k <= last; ++k) {
     const double told = by_octave_[k].value();
     ratio = std::isfinite(told) ? std::max(1.0, told / value()) : k > 0 ? 2.0 * ratio : 1.0;
+  }
+  for (std::size_t k = last; k < kOctaves; ++k) {
+    if (const double told = by_octave_[k].value(); std::isfinite(told)) {
+      return std::min(ratio, std::max(1.0, told / value()));
+    }
   }
   return ratio;
 }

@@ -15,15 +15,18 @@ namespace kelpie {
 /// a change. Effects count in octaves of the usual error of all rows. Allocates nothing.
 class ErrorsByEffect {
  public:
+  void add(double error) { all_.add(error); }  ///< Adds to the errors of all rows.
+
   /// Adds the error of a row where the effects of commands and drag have the root sum of squares
-  /// `effect`. `usual`: whether the row counts for the usual error of all rows.
-  void add(double error, double effect, bool usual);
+  /// `effect`. Of a model that is known: a rare octave keeps its errors for long.
+  void add_with(double error, double effect);
 
   /// The usual error of all rows; infinite while unknown.
   double value() const { return all_.value(); }
 
   /// The usual error of rows with such effects over value(), 1 or more; 1 while value() is unknown
-  /// or 0. An octave without errors enough has those of the octave below, in proportion.
+  /// or 0. An octave without errors enough has those of the octave below, in proportion, and
+  /// at most those of the next octave with errors above.
   double ratio(double effect) const;
 
   void clear();  ///< Forgets the errors.

@@ -17,7 +17,11 @@ ErrorsByEffect after_a_drive(double share) {
   ErrorsByEffect errors;
   for (int i = 0; i < 20'000; ++i) {
     const double effect = i % 10 == 0 ? random.uniform(1.0, 10.0) : 0.05;
-    errors.add(0.1 * random.normal() + share * effect * random.normal(), effect, i % 4 == 0);
+    const double error = 0.1 * random.normal() + share * effect * random.normal();
+    errors.add_with(error, effect);
+    if (i % 4 == 1) {
+      errors.add(error);
+    }
   }
   return errors;
 }
