@@ -101,26 +101,6 @@ TEST(ChangeMonitor, BelievesInAHalvedThrusterAtAnyRate) {
   }
 }
 
-// Five rows a second, stamped 0.6000000000000001 s or 1'700'000'000.6 s: every row counts.
-TEST(ChangeMonitor, RoundedStampsLoseNoRow) {
-  constexpr double kStepS = 0.2;
-  const PlanarDrive exact = damaged(0.25, 900.0, 60.0, 0.5);
-  const auto changed_row = [&](double from_s, double step_s) {
-    ChangeMonitor monitor = make_monitor();
-    for (std::size_t i = 0; i < exact.x.size(); ++i) {
-      if (monitor.update(exact.x[i], exact.y[i], from_s + step_s * static_cast<double>(i)) ==
-          Event::changed) {
-        return i;
-      }
-    }
-    return exact.x.size();
-  };
-  const auto apart = static_cast<double>(changed_row(0.0, kStepS * 1.0001));
-  EXPECT_LT(apart, static_cast<double>(exact.x.size()));
-  EXPECT_NEAR(static_cast<double>(changed_row(0.0, kStepS)), apart, 3.0);
-  EXPECT_NEAR(static_cast<double>(changed_row(1'700'000'000.0, kStepS)), apart, 3.0);
-}
-
 // Half of the thrust n1|n1| is the thrust of n1 √½.
 TEST(ChangeMonitor, TellsTheFactorOfACommandThatHasLostHalfOfItsEffect) {
   ChangeMonitor monitor = make_monitor();
