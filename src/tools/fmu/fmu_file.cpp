@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "file/atomic_file.hpp"
 #include "file/content.hpp"
 #include "file/plugin.hpp"
 #include "file/tuning.hpp"
@@ -22,8 +21,6 @@
 
 namespace kelpie::fmu {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kModelIdentifier = "kelpie_vehicle";  // name of the shared object
 #if defined(__x86_64__)
@@ -210,10 +207,6 @@ std::string fmu_content(const TrainedModel& model, const FmuOptions& options) {
   archive.add("resources/model.json", text);
   archive.add(fmt::format("binaries/{}/{}.so", kPlatform, kModelIdentifier), shared_object);
   return archive.bytes();
-}
-
-void write_fmu(const fs::path& fmu, const TrainedModel& model, const FmuOptions& options) {
-  file::write_file_whole(fmu, fmu_content(model, options));
 }
 
 }  // namespace kelpie::fmu

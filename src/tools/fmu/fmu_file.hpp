@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <string>
 
@@ -26,9 +25,5 @@ std::string model_description(const Vehicle& vehicle, const std::string& guid,
 /// object of this kelpie for this machine, under the standard's names. Throws InputError as Vehicle
 /// and model_description(), Failure where the shared object is missing.
 std::string fmu_content(const TrainedModel& model, const FmuOptions& options);
-
-/// Writes fmu_content(), whole or not at all. Throws Failure where the file can't be written.
-void write_fmu(const std::filesystem::path& fmu, const TrainedModel& model,
-               const FmuOptions& options);
 
 }  // namespace kelpie::fmu

@@ -21,6 +21,7 @@
 #include <tuple>
 #include <vector>
 
+#include "file/atomic_file.hpp"
 #include "fmu/fmi2.hpp"
 #include "fmu/vehicle.hpp"
 #include "format/model_json.hpp"
@@ -42,6 +43,10 @@ using testing::TemporaryFolder;
 const std::vector<std::string> kInputs{"u", "v", "r", "th1", "th2"};
 const std::vector<std::string> kTargets{"udot", "vdot", "rdot"};
 constexpr double kStepS = 0.1;
+
+void write_fmu(const fs::path& file, const TrainedModel& model, const FmuOptions& options) {
+  file::write_file_whole(file, fmu_content(model, options));
+}
 
 // A boat with two propellers, of which a model is learned.
 TrainedModel learned_boat(bool with_actuators = false) {
@@ -115,7 +120,7 @@ class Host {
  public:
   explicit Host(const TrainedModel& model, const fmu::FmuOptions& options = {}) {
     const fs::path file = folder_ / "vehicle.fmu";
-    fmu::write_fmu(file, model, options);
+    write_fmu(file, model, options);
     description_ = entry_of(file, "modelDescription.xml");
     for (const char* const part : {"resources/model.json", "binaries/linux64/kelpie_vehicle.so"}) {
       fs::create_directories((folder_ / part).parent_path());
@@ -407,8 +412,8 @@ TEST(Fmu, TheDescriptionFollowsTheSchemaOfTheStandard) {
 
 TEST(Fmu, TheSameModelGivesTheSameBytes) {
   const TemporaryFolder folder;
-  fmu::write_fmu(folder / "a.fmu", boat(), {});
-  fmu::write_fmu(folder / "b.fmu", boat(), {});
+  write_fmu(folder / "a.fmu", boat(), {});
+  write_fmu(folder / "b.fmu", boat(), {});
   const auto bytes = [&](const char* name) {
     std::ifstream stream(folder / name, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
@@ -418,7 +423,7 @@ TEST(Fmu, TheSameModelGivesTheSameBytes) {
 
 TEST(Fmu, TheSharedObjectNeedsNoReaderOfLogs) {
   const TemporaryFolder folder;
-  fmu::write_fmu(folder / "a.fmu", boat(), {});
+  write_fmu(folder / "a.fmu", boat(), {});
   const std::string object = entry_of(folder / "a.fmu", "binaries/linux64/kelpie_vehicle.so");
   EXPECT_NE(object.find("libstdc++.so"), std::string::npos);
   for (const char* const library :
@@ -436,7 +441,7 @@ TEST(Fmu, AModelThatCannotBeRolledOutIsNoUnit) {
   }
   const TemporaryFolder folder;
   EXPECT_NE(message_of<InputError>([&] {
-              fmu::write_fmu(folder / "a.fmu", model.trained(), {});
+              write_fmu(folder / "a.fmu", model.trained(), {});
             }).find("cannot be rolled out"),
             std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "a.fmu"));
