@@ -6,10 +6,6 @@
 
 namespace kelpie {
 
-/// The share of a step after which the step is over: stamps are rounded, those of five rows per
-/// second by 0.2 µs where seconds count from 1970.
-inline constexpr double kAlmost = 0.999;
-
 /// The behavioural constants of the room model, each with unit and source. "By hand": chosen by
 /// hand; no measurement recorded.
 inline constexpr struct ModelTuning {
@@ -123,9 +119,10 @@ inline constexpr struct ModelTuning {
 
   /// The equations of motion of a vehicle (model/steady_part.hpp).
   struct Steady {
-    double prior = 0.1;          ///< samples per coefficient; by hand
-    double step_s = 0.2;         ///< s, least step: a fifth of the fastest vehicle's time constant
-    double jump = 4.0;           ///< usual accelerations of a cut in the log; by hand
+    double prior = 0.1;     ///< samples per coefficient; by hand
+    double step_s = 0.2;    ///< s, least step: a fifth of the fastest vehicle's time constant
+    double almost = 0.999;  ///< of a step, which is over: stamps are rounded, by 0.2 µs since 1970
+    double jump = 4.0;      ///< usual accelerations of a cut in the log; by hand
     double noisy_jump = 8.0;     ///< standard deviations of an unexplained change, of a cut, too
     double clip = 3.0;           ///< of these deviations: more tells nothing of the noise
     double memory = 1000.0;      ///< samples or steps, mean of errors; by hand
