@@ -14,7 +14,8 @@ MemberShares::MemberShares(std::span<const double> first) : members_(first.size(
 void MemberShares::score(std::span<const double> errors) {
   for (std::size_t k = 0; k < members_; ++k) {
     // What isn't a number is no better than the worst.
-    block_[k] += errors[k] < kOnline.shares.clip ? errors[k] : kOnline.shares.clip;
+    const double error = errors[k] < kOnline.shares.clip ? errors[k] : kOnline.shares.clip;
+    block_[k] += error * std::sqrt(error);
   }
   if (++scored_ == kBlock) {
     learn_block();

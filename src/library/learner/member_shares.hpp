@@ -13,10 +13,12 @@ namespace kelpie {
 /// Weights of a committee's members, from their errors on samples they have not learned yet, recent
 /// errors first (exponential weights: Cesa-Bianchi & Lugosi 2006).
 ///
-///     share_k ∝ exp(π_k − η L_k / e),  L_k ← λ L_k + mean of its block's errors, each at most 3
+///     share_k ∝ exp(π_k − η L_k / e),  L_k ← λ L_k + mean loss of its block
 ///
+/// The loss of an error is |error|^1.5, the error at most 3: between absolute errors, which a calm
+/// vehicle's rare manoeuvres hardly change, and squares, which garbage changes much.
 /// π_k, the logarithm of the first share, fades with every block as L does: π_k ← λ π_k.
-/// e is the mean error of the members, weighted by their shares: division by e makes the weights
+/// e is the mean loss of the members, weighted by their shares: division by e makes the weights
 /// independent of the noise level. A block consists of kBlock samples, predicted by copies of the
 /// members made before the block. (One step ahead, a member with a memory of the last sample would
 /// have the largest weight.) The last member is the mean of the targets: the shares of the members

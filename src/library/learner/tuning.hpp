@@ -96,11 +96,11 @@ struct OnlineTuning {
 
   /// MemberShares and CalibrationSlope; docs/method/committee.md as above.
   struct Shares {
-    double learning_rate = 0.15;  ///< η
-    double keep = 0.98;           ///< λ per block: a memory of 50 blocks
+    double learning_rate = 0.1;  ///< η
+    double keep = 0.98;          ///< λ per block: a memory of 50 blocks
     double least_share = 1e-9;
     double clip = 3.0;          ///< largest error of one sample [standard deviations]
-    double least_usual = 1e-3;  ///< smallest usual error [standard deviations]
+    double least_usual = 3e-5;  ///< smallest usual loss [standard deviations^1.5]
     double slope_keep = 0.999;  ///< λ per sample: a memory of 1,000 samples
     double slope_prior = 10.0;  ///< weight of slope 1 [samples]
     double slope_clip = 3.0;    ///< largest value of one sample [standard deviations]
