@@ -32,7 +32,7 @@ TEST_F(Learn, RefusesBadLogs) {
   expect_refused("back.csv", "to 4 s; rows have to be in the order of time");
   std::string swapped = "u,t,n,udot\n";
   for (int i = 0; i < 100; ++i) {
-    swapped += fmt::format("{},{},{},1\n", i, 0.2 * std::sin(i), std::cos(i));
+    swapped += fmt::format("{},{},{},{}\n", i, 0.2 * std::sin(i), std::cos(i), std::sin(2.0 * i));
   }
   write("swapped.csv", swapped);
   expect_refused("swapped.csv", "is this a column of time? --time names another");
