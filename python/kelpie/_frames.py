@@ -109,6 +109,7 @@ def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
                                           list(targets or []))
     _require(X, ins, "inputs")
     _require(X, outs, "targets")
+    is_of_frame = t is None or isinstance(t, str)
     if isinstance(t, str):
         time, t = t, None
         _require(X, [time], "t")
@@ -118,6 +119,8 @@ def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
     elif t is None:
         t = index_times(X)
     whole = np.isfinite(X[ins + outs].to_numpy(dtype=float)).all(axis=1)
+    if is_of_frame and t is not None:
+        whole &= _known(t)
     y = X[outs[0]] if len(outs) == 1 else X[outs]
     return Given(X[ins][whole], y[whole], None if t is None else _rows(t, whole), True)
 
@@ -128,6 +131,11 @@ def _stamp_names(X: Any) -> list[str]:
 
 def _kind(dtype: Any) -> str:
     return str(getattr(dtype, "kind", "O"))
+
+
+def _known(t: Any) -> Any:
+    times = np.asarray(t) if stamps_of(t) is None else stamps_of(t)
+    return ~np.isnat(times) if times.dtype.kind in "mM" else np.isfinite(times.astype(float))
 
 
 def _rows(t: Any, whole: Any) -> Any:

@@ -55,6 +55,15 @@ def test_rows_with_gaps_are_passed_over_in_a_whole_log(log, table):
     rest = np.delete(np.arange(600), [3, 50])
     other = kelpie.DynamicsModel(**SMALL).fit(log.X[rest], log.y[rest], log.t[rest])
     assert np.array_equal(model.predict(log_frame(log)), other.predict(log.X))
+    stamped = gappy.assign(t=pandas.Timestamp("2026-05-01") + pandas.to_timedelta(log.t, unit="s"))
+    for frame, none in ((gappy, np.nan), (stamped, pandas.NaT)):  # as `kelpie learn` does
+        timeless = frame.copy()
+        timeless["u"] = log.X[:, 0]
+        timeless.loc[timeless.index[[3, 50]], "t"] = none
+        model = kelpie.DynamicsModel(**{**SMALL, "inputs": INPUTS}).fit(timeless)
+        assert np.array_equal(model.predict(log_frame(log)), other.predict(log.X))
+    with pytest.raises(ValueError, match="t contains NaN"):
+        kelpie.DynamicsModel(**SMALL).fit(table, t=np.where(log.t == log.t[3], np.nan, log.t))
 
 
 def test_columns_are_taken_by_name(log, table, model):

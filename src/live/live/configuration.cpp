@@ -21,6 +21,7 @@
 #include "live/row_reader.hpp"
 #include "live/tuning.hpp"
 #include "log/draft.hpp"
+#include "log/read_log.hpp"
 #include "study/identification.hpp"
 
 namespace kelpie::live {
@@ -320,6 +321,20 @@ Fields Configuration::identity() const {
     fields.emplace_back("live.valid." + column, number_text(least));
   }
   return fields;
+}
+
+std::map<std::string, std::string> Configuration::units() const {
+  std::map<std::string, std::string> units;
+  if (rows) {
+    for (const auto& [column, unit] : rows->units) {
+      units.emplace(column, unit.text());
+    }
+    return units;
+  }
+  for (const auto& [column, unit] : log::row_units(plan, log.roles)) {
+    units.emplace(column, log::si_unit(file, column, unit).first.text());
+  }
+  return units;
 }
 
 std::vector<std::string> Configuration::columns() const {

@@ -78,6 +78,8 @@ struct Configuration {
   /// Everything besides the settings that a checkpoint must match to be resumed. Keys as in the
   /// file ("log.rate").
   Fields identity() const;
+  /// Units of columns, as `kelpie learn` has them of the same rows.
+  std::map<std::string, std::string> units() const;
   /// Topics and fields of the sources and of LiveSettings::valid, without repeats.
   std::vector<std::string> columns() const;
 };

@@ -315,8 +315,9 @@ bool LiveLearner::write_model() const {
   }
   TrainedModel trained = model.trained();
   trained.alignment = alignment_.alignment();
-  file::write_file_whole(folder_ / "model.json",
-                         format::model_json(trained, {.doubt = progress_.doubt}));
+  file::write_file_whole(
+      folder_ / "model.json",
+      format::model_json(trained, {.units = configuration_.units(), .doubt = progress_.doubt}));
   return true;
 }
 

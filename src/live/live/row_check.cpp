@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "live/tuning.hpp"
@@ -29,6 +30,8 @@ RowCheck::RowCheck(const StreamPlan& plan, std::string states)
           std::max(1.0, std::ceil(plan.rate_hz / kTuning.checked_rate_hz)))) {
   rows_.input_names = plan.inputs;
   rows_.target_names = plan.targets;
+  std::ranges::transform(plan.derived, std::back_inserter(rows_.derived),
+                         &StreamPlan::Derived::name);
   rows_.rate_hz = plan.rate_hz / static_cast<double>(thinning_);
   due_ = std::max(static_cast<std::size_t>(kTuning.checked_s * rows_.rate_hz),
                   kTuning.least_checked_rows);

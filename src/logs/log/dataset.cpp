@@ -120,17 +120,41 @@ ColumnsInUse find_columns(const Table& table, const Roles& roles) {
 
 // Of a log of several runs: how often its time begins anew within the first second of the first.
 std::size_t starts_anew(const std::vector<double>& times) {
+  constexpr double kNear = 1.0;
   std::size_t starts = 0;
   std::optional<double> before;
   double first = std::numeric_limits<double>::infinity();
   for (const double now : times) {
     if (std::isfinite(now)) {
       first = std::min(first, before ? first : now);
-      starts += before && now < *before && std::abs(now - first) <= 1.0 ? 1 : 0;
+      starts += before && now < *before - kNear && std::abs(now - first) <= kNear ? 1 : 0;
       before = now;
     }
   }
   return starts;
+}
+
+// Whether the values go up and down, as those of no clock and of no rows in reverse.
+bool goes_up_and_down(const std::vector<double>& times) {
+  constexpr double kShare = 0.1;  // by hand
+  double up = 0.0;
+  double down = 0.0;
+  for (std::size_t row = 1; row < times.size(); ++row) {
+    up += times[row] > times[row - 1] ? 1.0 : 0.0;
+    down += times[row] < times[row - 1] ? 1.0 : 0.0;
+  }
+  return std::min(up, down) > kShare * (up + down);
+}
+
+std::string order_text(const std::vector<double>& times) {
+  if (const std::size_t starts = starts_anew(times); starts > 1) {
+    return fmt::format(
+        "time begins anew {} times: give each run a file of its own, `kelpie learn "
+        "run1.csv run2.csv …`, or the rows per second by --rate",
+        starts);
+  }
+  return std::string("rows have to be in the order of time") +
+         (goes_up_and_down(times) ? "; is this a column of time? --time names another" : "");
 }
 
 // Looks at the rows to be skipped, too: a clock that jumped there spoils all that follow.
@@ -142,15 +166,10 @@ void check_time(const Table& table, std::size_t column) {
       continue;
     }
     if (before && now < table.columns[column][*before]) {
-      const std::size_t starts = starts_anew(table.columns[column]);
       refuse(table, table.names[column],
              fmt::format("time runs backwards, from {} (line {}) to {} s; {}",
                          table.columns[column][*before], table.lines[*before], now,
-                         starts < 2 ? "rows have to be in the order of time"
-                                    : fmt::format("time begins anew {} times: give each run a file "
-                                                  "of its own, `kelpie learn run1.csv run2.csv …`, "
-                                                  "or the rows per second by --rate",
-                                                  starts)),
+                         order_text(table.columns[column])),
              table.lines[row]);
     }
     before = row;
@@ -226,7 +245,9 @@ void check_varying(const Table& table, const Names& names, const std::vector<dou
   }
 }
 
-std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
+}  // namespace
+
+std::map<std::string, Unit> column_units(const Table& table, const Roles& roles) {
   std::map<std::string, Unit> units;
   for (std::size_t column = 0; column < table.units.size(); ++column) {
     if (!table.units[column].empty()) {
@@ -239,6 +260,8 @@ std::map<std::string, Unit> read_units(const Table& table, const Roles& roles) {
   }
   return units;
 }
+
+namespace {
 
 const std::vector<double>& finite_column(const Table& table, const std::string& name) {
   const std::size_t column = table.find(name);
@@ -397,7 +420,7 @@ Dataset make_dataset(const Table& table, const Roles& roles) {
   for (const std::size_t column : columns.targets) {
     data.target_names.push_back(table.names[column]);
   }
-  data.units = read_units(table, roles);
+  data.units = column_units(table, roles);
   data.actuators = roles.actuators;
   data.rows_read = table.rows();
   copy_rows(table, columns, roles.rate_hz, data);

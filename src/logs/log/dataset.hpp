@@ -98,13 +98,14 @@ struct Dataset {
   std::string source;
   std::vector<std::string> input_names;
   std::vector<std::string> target_names;
-  std::vector<double> inputs;       ///< row-major, rows × inputs, in the log's own units
-  std::vector<double> targets;      ///< row-major, rows × targets
-  std::vector<double> times_s;      ///< seconds, never decreasing
-  std::vector<int> configurations;  ///< number of the vehicle's configuration, 0 where not told
-  std::vector<bool> held_out;       ///< marks of held-out rows; empty: not marked
-  std::string heading_column{};     ///< empty: none
-  std::vector<double> headings{};   ///< of each row, as the log has them, perhaps NaN; or empty
+  std::vector<double> inputs;          ///< row-major, rows × inputs, in the log's own units
+  std::vector<double> targets;         ///< row-major, rows × targets
+  std::vector<double> times_s;         ///< seconds, never decreasing
+  std::vector<int> configurations;     ///< number of the vehicle's configuration, 0 where not told
+  std::vector<bool> held_out;          ///< marks of held-out rows; empty: not marked
+  std::vector<std::string> derived{};  ///< targets that are derivatives of inputs by sampling
+  std::string heading_column{};        ///< empty: none
+  std::vector<double> headings{};      ///< of each row, as the log has them, perhaps NaN; or empty
   /// Where inputs are means over the window of a pose: rows × 3 of x, y [m] and heading [rad] at
   /// the rows' own times (NaN: not measured), and the inputs there, for LogSource::with_poses; else
   /// empty. Headings are continuous.
@@ -158,6 +159,10 @@ struct Roles {
 /// (source, column) on text that is no unit.
 std::pair<Unit, double> si_unit(const std::string& source, const std::string& column,
                                 const std::string& text);
+
+/// Units of the columns of a table: those of its header, and over these those of `roles`, in the
+/// SI. Throws as si_unit() does.
+std::map<std::string, Unit> column_units(const Table& table, const Roles& roles);
 
 /// Converts the columns named in `units` to the SI, and sets the units of the table. A unit of time
 /// (`t = "ms"`) is kept for Table::seconds_per_unit(). Throws InputError on a missing column and as

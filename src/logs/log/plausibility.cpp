@@ -349,7 +349,9 @@ std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& s
       find_states(states, data.input_names, data.target_names.size());
   std::vector<TargetCheck> checks;
   for (std::size_t target = 0; target < data.target_names.size(); ++target) {
-    if (const auto velocity = velocity_of(data, found, target)) {
+    const bool is_derived = std::ranges::count(data.derived, data.target_names[target]) > 0;
+    const auto velocity = is_derived ? std::nullopt : velocity_of(data, found, target);
+    if (velocity) {
       if (const auto check = check_target(data, *velocity, target)) {
         checks.push_back(*check);
       }

@@ -19,7 +19,8 @@ struct TargetCheck {
 };
 
 /// Checks the targets that belong to a known velocity: the velocity of the setting `states`, else
-/// the input that the target is named after (udot, u_dot or du beside u). Windows last 1 s and 5 s,
+/// the input that the target is named after (udot, u_dot or du beside u), but for Dataset::derived,
+/// which cannot contradict the velocities. Windows last 1 s and 5 s,
 /// at least five rows; the length with the larger correlation counts. A target without a velocity,
 /// without motion, or with fewer than 20 windows has no check. Cost O(rows). Allocates.
 std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states);

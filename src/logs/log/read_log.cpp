@@ -66,7 +66,7 @@ void add_unit(const bag::Series& series, const std::string& from, const std::str
 
 // Derivatives have the unit of what they are of, per s; what the user says goes before.
 std::map<std::string, std::string> all_units(std::map<std::string, std::string> found,
-                                             const SamplingPlan& plan, const Roles& roles) {
+                                             const StreamPlan& plan, const Roles& roles) {
   for (const StreamPlan::Derived& derived : plan.derived) {
     if (const auto of = found.find(derived.of); of != found.end()) {
       found[derived.name] = of->second + "/s";
@@ -278,8 +278,25 @@ void restore_labels(const Roles& roles, Table& table) {
   }
 }
 
+// Roles with the units of the log's columns under the names of the columns in the rows: psi is yaw
+// where a pose says so.
+Roles with_units_of_rows(Roles roles, const StreamPlan& plan) {
+  const std::map<std::string, std::string> given = roles.units;
+  for (const auto& [column, unit] : given) {
+    const bool is_of_row = std::ranges::count(plan.sources, column, &StreamPlan::Source::name) > 0;
+    for (const StreamPlan::Source& source : plan.sources) {
+      if (!is_of_row && source.from == column) {
+        roles.units.erase(column);
+        roles.units[source.name] = unit;
+      }
+    }
+  }
+  return roles;
+}
+
 Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogConfig& config,
-                const Roles& roles) {
+                const Roles& wanted) {
+  const Roles roles = with_units_of_rows(wanted, config.plan);
   SamplingPlan plan = sampling_plan(config, roles);
   plan.with_instants = source.with_poses;
   const bag::RowTimes times = row_times(config, roles);
@@ -304,9 +321,7 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
   log.losses = std::move(found.losses);
   log.disarmed = found.disarmed;
   log.units = all_units(std::move(found.units), plan, log.roles);
-  for (auto& [column, unit] : log.roles.units) {
-    unit = log.units[column];  // of the rows
-  }
+  log.roles.units = row_units(plan, log.roles);
   Samples samples = sample(plan, std::move(found.signals), source.path);
   log.table = std::move(samples.table);
   log.instants = std::move(samples.instants);
@@ -321,6 +336,12 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
 
 }  // namespace
 
+std::map<std::string, std::string> row_units(const StreamPlan& plan, const Roles& roles) {
+  std::map<std::string, std::string> units = all_units({}, plan, roles);
+  std::erase_if(units, [&](const auto& unit) { return !roles.units.contains(unit.first); });
+  return units;
+}
+
 std::unique_ptr<bag::MessageReader> LogSource::open_bag(const bag::RowTimes& times) const {
   return bag::open_bag(path, mode, times);
 }
@@ -332,6 +353,9 @@ Dataset Log::dataset() const {
   }
   Dataset data = make_dataset(table, all);
   add_pose_instants(instants, data);
+  for (const SamplingReport::OfDerived& derived : sampling.derived) {
+    data.derived.push_back(derived.name);
+  }
   if (!sampling.sources.empty()) {
     data.rate_hz = sampling.rate_hz;  // as asked for; stamps tell it only to rounding
   }

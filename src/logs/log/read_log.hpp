@@ -37,6 +37,10 @@ struct Log {
 /// Time column and rate for rows without time, from `roles`, or else from `config`.
 bag::RowTimes row_times(const LogConfig& config, const Roles& roles);
 
+/// Units of the sampled columns that have a unit in `roles`: converted to the SI, derivatives as
+/// their sources.
+std::map<std::string, std::string> row_units(const StreamPlan& plan, const Roles& roles);
+
 /// Reads any recorded data; the only entry. If `config` names states or commands, the log's signals
 /// are sampled at a common rate (docs/howto/logs.md). Otherwise a table with all `roles.inputs`,
 /// or with the usual names (guess_roles), is used directly; a bag, and any other table, is read

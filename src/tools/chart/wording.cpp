@@ -88,6 +88,22 @@ std::string shortened(std::string_view text, std::size_t most) {
   return fmt::format("{}…", whole.substr(0, end));
 }
 
+std::string file_names(std::string_view paths) {
+  constexpr std::string_view kBetween = ", ";
+  std::string names;
+  for (std::size_t begin = 0; begin <= paths.size();) {
+    const std::size_t end = std::min(paths.find(kBetween, begin), paths.size());
+    std::string_view path = paths.substr(begin, end - begin);
+    while (path.size() > 1 && path.ends_with('/')) {
+      path.remove_suffix(1);
+    }
+    names += names.empty() ? "" : kBetween;
+    names += path.substr(std::min(path.rfind('/') + 1, path.size() - 1));
+    begin = end + kBetween.size();
+  }
+  return names;
+}
+
 std::string escape_markup(std::string_view text) {
   std::string escaped;
   for (const char letter : printable(text)) {

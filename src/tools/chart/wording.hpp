@@ -22,6 +22,10 @@ constexpr std::size_t kLongestName = 24;  ///< of an axis or a formula in a tabl
 /// Printable text of at most `most` code points (≥ 1), with "…" at the end of cut text.
 std::string shortened(std::string_view text, std::size_t most);
 
+/// Names of files without their folders: "a.csv, b.csv" of "dives/a.csv, dives/b.csv". A path that
+/// ends in "/" is that of a folder.
+std::string file_names(std::string_view paths);
+
 /// Printable text for HTML and SVG, in elements as well as in quoted attributes.
 std::string escape_markup(std::string_view text);
 

@@ -41,7 +41,9 @@ void to_samples(const ConvertArguments& options) {
 
 void to_csv(const ConvertArguments& options) {
   if (options.columns.empty()) {
-    throw InputError("--columns", "is missing; name columns as in /odom:twist.twist.linear.x");
+    throw InputError("--columns",
+                     "is missing; name columns as in /odom:twist.twist.linear.x, or give "
+                     "--config with the table [log] (`kelpie inspect BAG --template`)");
   }
   const bag::Clock clock = options.clock == "header" ? bag::Clock::header : bag::Clock::receive;
   const log::Log log = log::read_columns(options.bag, options.columns, clock);

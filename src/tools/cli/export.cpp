@@ -63,9 +63,12 @@ void tell_c(const TrainedModel& model, const ExportArguments& options,
 void export_live(const TrainedModel& model, const format::LiveFiles& files,
                  const format::CodeOptions& code) {
   format::write_live_library(files, model, code);
+  // Loaders look for a name without a folder elsewhere.
+  const std::filesystem::path loaded =
+      files.library.has_parent_path() ? files.library : "." / files.library;
   say("library: {} (for CasADi: external(\"{}\", \"{}\"))\nblock:   {} (kelpie live --block {})\n"
       "source:  {}\n",
-      files.library.string(), code.name, files.library.string(), files.block.string(),
+      files.library.string(), code.name, loaded.string(), files.block.string(),
       files.block.string(), files.source.string());
 }
 

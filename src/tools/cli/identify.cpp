@@ -277,7 +277,8 @@ void run_identify(const IdentifyArguments& given) {
   answer.next = {result.found.scale == study::ScaleSource::none
                      ? fmt::format("kelpie identify {} --mass KG   (masses and forces, not ratios)",
                                    again_text(given))
-                     : "kelpie simulate SCENARIO.toml   (docs/reference/simulator.md)"};
+                     : "kelpie simulate SCENARIO.toml --out log.csv   "
+                       "(docs/reference/simulator.md)"};
   give(answer, options.answer);
 }
 

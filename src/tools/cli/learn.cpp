@@ -289,7 +289,11 @@ file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std
 report::LogWords words_of(const LearnArguments& options) {
   report::LogWords words{.file = shell_word(options.log.source.path),
                          .learning = {},
-                         .judging = options.judging_text(options.config)};
+                         .judging = {},
+                         .reading = options.reading_text()};
+  if (options.split != "none") {
+    words.judging = options.judging_text(options.config);
+  }
   if (options.more.empty()) {
     PlanOptions again = options;
     again.since_s.reset();

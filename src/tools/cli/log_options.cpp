@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "chart/wording.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "core/text.hpp"
@@ -208,6 +209,14 @@ std::vector<std::string> PlanOptions::files() const {
   return files;
 }
 
+std::string PlanOptions::reading_text() const {
+  LogOptions reading = log;
+  reading.configuration.clear();  // models know no configurations
+  std::string text = reading.text();
+  add_option(text, "--config", config);
+  return text;
+}
+
 std::string PlanOptions::judging_text(const std::string& configuration) const {
   std::string text = log.text();
   add_option(text, "--config", configuration);
@@ -336,6 +345,27 @@ void add_known_current_option(CLI::App& command, std::string& current) {
                   "in 0.2,-0.1: along heading 0 and along a quarter turn")
       ->type_name("{learned,none,C1,C2}")
       ->capture_default_str();
+}
+
+void tell_other_units(const TrainedModel& model, const format::ColumnUnits& learned,
+                      const std::map<std::string, Unit>& units, const std::string& log) {
+  std::vector<std::string> columns = model.input_names;
+  std::ranges::copy(model.target_names(), std::back_inserter(columns));
+  for (const std::string& column : columns) {
+    const auto own = units.find(column);
+    const auto known = learned.find(column);
+    if (own == units.end() || known == learned.end()) {
+      continue;
+    }
+    const Unit wanted = Unit::parse(known->second);
+    if (own->second.text() != wanted.text()) {
+      const bool converts = own->second.in_si().first.text() == wanted.text();
+      warn("{}: WARNING: {} is in {}, and the model learned {}{}\n", log, column,
+           chart::unit_text(own->second.text()), chart::unit_text(wanted.text()),
+           converts ? "; --units " + shell_word(column + "=" + own->second.text()) + " converts"
+                    : "");
+    }
+  }
 }
 
 void settle_current(const std::string& wish, bool is_learned, const std::string& log,

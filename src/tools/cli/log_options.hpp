@@ -11,9 +11,11 @@
 
 #include "bag/open_bag.hpp"
 #include "format/learned_logs.hpp"
+#include "format/model_json.hpp"
 #include "format/origin.hpp"
 #include "format/settings_file.hpp"
 #include "kelpie/motion/frame.hpp"
+#include "kelpie/motion/unit.hpp"
 #include "log/read_log.hpp"
 #include "study/learn.hpp"
 
@@ -66,6 +68,8 @@ struct PlanOptions {
 
   std::vector<std::string> files() const;  ///< logs and configuration file
 
+  /// The options by which another log like this one is read, as given: " --rate 4".
+  std::string reading_text() const;
   /// The options of a command that judges a model on the log, as given; `configuration`: file ("":
   /// none). " --rate 4 --split tail".
   std::string judging_text(const std::string& configuration) const;
@@ -126,6 +130,10 @@ inline constexpr const char* kUsualCurrent = "learned";
 
 /// The option --current of commands that take a model: learned, none, or two speeds.
 void add_known_current_option(CLI::App& command, std::string& current);
+
+/// Prints to stderr the columns of a model whose unit in the log is another than the unit learned.
+void tell_other_units(const TrainedModel& model, const format::ColumnUnits& learned,
+                      const std::map<std::string, Unit>& units, const std::string& log);
 
 /// Settles the current of a log for a model of velocities through the water, by the option
 /// --current; without effect on other models. `is_learned`: the model learned this log. Throws

@@ -294,6 +294,7 @@ void predict(const PredictArguments& options) {
   const KnownRows known = known_rows(model, table, info.learned);
   settle_current(options.current, !known.held_out.empty(), options.source.path, model);
   const SeenRows seen = seen_rows(model, table, log.roles);
+  tell_other_units(model, info.units, log::column_units(table, log.roles), options.source.path);
   tell_far_inputs(model, seen, options.source.path);
   const std::vector<NewColumn> columns = new_columns(model, seen, table.rows(), options.jacobian);
   for (const NewColumn& column : columns) {

@@ -244,6 +244,7 @@ void rollout(const RolloutArguments& options) {
   const OpenLoop loop = open_loop(model);
   if (options.start.empty()) {
     log::Dataset read = read_judged_log(options, model);
+    tell_other_units(model, info.units, read.units, options.log.source.path);
     settle_current(options.current, !format::held_out_rows(info.learned, read).empty(),
                    options.log.source.path, model);
     const log::Dataset data = study::aligned(std::move(read), model.alignment);

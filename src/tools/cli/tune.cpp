@@ -159,11 +159,12 @@ study::TuneResult search(const TuneArguments& options, const study::TuneProblem&
   return study::tune(problem, tuning, journal, executor);
 }
 
-// The logs and options of a `learn` with what was found: by the file `tuned`, or by --set where the
-// [log] of --config is needed.
+// A log and the options of a `learn` with what was found: by the file `tuned`, or by --set where
+// the [log] of --config is needed.
 std::string learn_text(const TuneArguments& options, const ModelSettings& base,
                        const study::TuneResult& result, const std::string& tuned) {
   PlanOptions again = options;
+  again.more.clear();  // streams of their own, perhaps of other rates
   if (options.config.empty() || !file::TomlNode::read(options.config).has("log")) {
     again.set.clear();  // the file has them
     return again.text(tuned);

@@ -86,7 +86,7 @@ std::vector<std::string> certificate_remarks(const study::CertificateList& list)
       remarks.push_back(fmt::format(
           "{} ({}) is unstable at its step of {} ms: {}{}.", certificate.engine.name,
           certificate.engine.title, step_text(certificate.engine.step_s),
-          limit.term ? fmt::format("the {} on the axis of {} is to blame, ",
+          limit.term ? fmt::format("to blame: the {} on the axis of {}, ",
                                    vehicle::term_text(*limit.term), vehicle::axis_text(limit.axis))
                      : std::string(),
           limit.largest_s ? "and steps up to " + step_text(*limit.largest_s) + " ms are stable"

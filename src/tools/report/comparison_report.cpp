@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -205,7 +204,7 @@ std::string comparison_table(const study::Comparison& comparison) {
 
 std::string comparison_html(const study::Comparison& comparison) {
   const study::StreamResult& kelpie = comparison.contests.front().stream;
-  const std::string log = std::filesystem::path(kelpie.source).filename().string();
+  const std::string log = chart::file_names(kelpie.source);
   const std::string opening = chart::paragraph("over", "kelpie beside simpler models on " + log) +
                               advice_opening(comparison) +
                               chart::html_table(ranked_view(comparison));

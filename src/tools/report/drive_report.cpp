@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -197,7 +196,7 @@ std::string drive_tables(const format::PlannedDrive& drive) {
 }
 
 std::string drive_html(const format::PlannedDrive& drive) {
-  const std::string log = std::filesystem::path(drive.source).filename().string();
+  const std::string log = chart::file_names(drive.source);
   const std::string opening = chart::paragraph("over", "Drive this next, by " + log) +
                               chart::heading(1, drive_headline(drive) + ".");
   if (drive.plan.manoeuvres.empty()) {

@@ -50,10 +50,15 @@ std::string span_text(const HealthCard& card) {
   for (const health::Episode& episode : table.episodes) {
     hours += episode.hours;
   }
-  return fmt::format("{}: {} episodes, {:.3g} h of logs, {} to {}", card.vehicle,
-                     table.episodes.size(), hours,
+  return fmt::format("{}: {} episode{}, {:.3g} h of logs, {} to {}", card.vehicle,
+                     table.episodes.size(), table.episodes.size() == 1 ? "" : "s", hours,
                      health::day_text(card, table.episodes.front().day),
                      health::day_text(card, table.episodes.back().day));
+}
+
+bool has_too_few_episodes(const HealthCard& card) {
+  return std::ranges::all_of(
+      card.changes, [](const Change& change) { return change.course.kind == CourseKind::unknown; });
 }
 
 // What no significant change bounds: the widest of the intervals since deployment.
@@ -184,8 +189,11 @@ std::string health_headline(const std::vector<HealthCard>& cards) {
     return fmt::format("{} of {} vehicles changed.", changed_vehicles(cards), cards.size());
   }
   const std::vector<const Change*> found = found_changes(cards.front());
-  return found.empty() ? "No significant change was found."
-                       : health::change_text(cards.front(), *found.front()) + ".";
+  if (found.empty()) {
+    return has_too_few_episodes(cards.front()) ? "Too few episodes to tell a change."
+                                               : "No significant change was found.";
+  }
+  return health::change_text(cards.front(), *found.front()) + ".";
 }
 
 }  // namespace
@@ -201,7 +209,8 @@ std::string health_verdict(const std::vector<HealthCard>& cards) {
               "\n";
     }
     if (found.empty()) {
-      text += "  no significant change\n";
+      text += has_too_few_episodes(card) ? "  too few episodes to tell a change\n"
+                                         : "  no significant change\n";
     }
     if (const std::string quiet = quiet_text(card); !quiet.empty() && cards.size() == 1) {
       text += chart::wrapped(chart::printable(quiet)) + "\n";

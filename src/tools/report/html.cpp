@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
 #include "chart/page.hpp"
@@ -77,7 +76,7 @@ std::string quality(const study::StreamResult& result) {
 
 // The first screen: what matters most, how good the model is, and of what.
 std::string opening(const study::StreamResult& result, const std::vector<NextStep>& next) {
-  const std::string log = std::filesystem::path(result.source).filename().string();
+  const std::string log = chart::file_names(result.source);
   const std::string news = headline(result);
   const std::vector<std::string> warnings = warning_lines(result);
   const bool warns = !warnings.empty();  // names of columns keep their small letters
@@ -132,7 +131,10 @@ std::string diagnosis_section(const study::StreamResult& result) {
   const chart::TextTable health = health_table(result);
   return changes.rows.empty() && health.rows.empty()
              ? ""
-             : chart::columns(chart::html_tables({changes}), chart::html_tables({health}));
+             : chart::columns(changes.rows.empty() ? chart::heading(3, changes.title) +
+                                                         chart::paragraph("", "Nothing.")
+                                                   : chart::html_tables({changes}),
+                              chart::html_tables({health}));
 }
 
 std::string accuracy_section(const study::StreamResult& result, Clock clock) {
@@ -252,7 +254,7 @@ std::string time_section(const study::StreamResult& result) {
 }  // namespace
 
 std::string report_html(const study::StreamResult& result, const std::vector<NextStep>& next) {
-  const std::string log = std::filesystem::path(result.source).filename().string();
+  const std::string log = chart::file_names(result.source);
   const chart::Section data{"Data", data_section(result), true};
   const chart::Section settings{"Settings", settings_section(result), true};
   if (!has_model(result)) {

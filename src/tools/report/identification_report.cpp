@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "chart/page.hpp"
 #include "chart/text_table.hpp"
@@ -265,7 +264,7 @@ std::string identification_table(const study::Identification& found) {
 }
 
 std::string identification_html(const study::Identification& found) {
-  const std::string log = std::filesystem::path(found.source).filename().string();
+  const std::string log = chart::file_names(found.source);
   const std::string bars = parameter_bars(found);
   const auto told = static_cast<std::size_t>(
       std::ranges::count_if(found.fit().parameters, [](const FittedParameter& parameter) {

@@ -48,10 +48,14 @@ std::vector<NextStep> after_learning(const study::StreamResult& result, const Lo
                                 *since_s, *log.learning),
                     "the changed vehicle alone: compare R²"});
   }
-  next.push_back({"kelpie rollout " + log.file + log.judging + " --model " + model,
-                  "how the error grows in open loop"});
-  next.push_back({"kelpie predict LOG --model " + model, "predictions for another log"});
-  next.push_back({"kelpie learn LOG --from " + model, "goes on with another log of the vehicle"});
+  if (result.diagnosis.why_not.empty() && log.judging) {
+    next.push_back({"kelpie rollout " + log.file + *log.judging + " --model " + model,
+                    "how the error grows in open loop"});
+  }
+  next.push_back(
+      {"kelpie predict LOG" + log.reading + " --model " + model, "predictions for another log"});
+  next.push_back({"kelpie learn LOG" + log.reading + " --from " + model,
+                  "goes on with another log of the vehicle"});
   return next;
 }
 

@@ -19,12 +19,14 @@ struct NextStep {
 struct LogWords {
   std::string file{};
   std::optional<std::string> learning{};  ///< options of `learn`; none: not to be learned anew
-  std::string judging{};                  ///< options of a command that judges a model
+  std::optional<std::string> judging{};   ///< options of `rollout`; none: no rows were held out
+  std::string reading{};                  ///< options by which another such log is read
 };
 
 /// The commands after `kelpie learn`, with the path of the model; first, where the vehicle changed
 /// and kTuning.rows_since or more rows follow, the command that learns these rows alone; not where
-/// a thruster is back at its nominal thrust.
+/// a thruster is back at its nominal thrust. `kelpie rollout` stands among them where velocities
+/// are known and rows are held out, else, without velocities, the setting that tells them.
 std::vector<NextStep> after_learning(const study::StreamResult& result, const LogWords& log,
                                      const std::string& model);
 

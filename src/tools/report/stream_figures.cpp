@@ -372,7 +372,8 @@ std::string course_figure(const study::AxisResult& axis, Clock clock) {
   figure.line(truth, kTruth, "measured");
   figure.line(predicted, kPredicted, "predicted");
   figure.markers(outliers, kOutlier, "outliers removed");
-  figure.errors_below("measured", "predicted", "error in " + unit_of(axis));
+  figure.errors_below("measured", "predicted",
+                      axis.unit.empty() ? "error" : "error in " + unit_of(axis));
   mark_events(figure, axis, clock);
   return figure.html(clipped == 0 ? ""
                                   : chart::grouped(clipped) +

@@ -293,14 +293,15 @@ std::string name_of(const TrialResult& one, const study::TuneResult& result, std
   return different.empty() ? nearest : nearest + " with " + join_text(different, ", ");
 }
 
-// The gain over the settings at the start on all rows, NaN where one is not judged.
+// The gain over the settings at the start on all rows, NaN where one is not judged; 0 where the
+// search kept these settings.
 double gain_of(const study::TunedAxis& axis) {
   return axis.all.tuned - axis.all.base;
 }
 
 bool any_gain(const study::TuneResult& result) {
-  return std::ranges::any_of(
-      result.axes, [](const study::TunedAxis& axis) { return gain_of(axis) > kTuning.clear_r2; });
+  return std::ranges::any_of(result.axes,
+                             [](const study::TunedAxis& axis) { return gain_of(axis) > 0.0; });
 }
 
 // The gain in one sentence.
@@ -309,7 +310,7 @@ std::string gain_sentence(const study::TuneResult& result) {
   bool judged = false;
   for (const study::TunedAxis& axis : result.axes) {
     judged = judged || std::isfinite(gain_of(axis));
-    if (gain_of(axis) > kTuning.clear_r2) {
+    if (gain_of(axis) > 0.0) {
       gained.push_back(fmt::format("{} by {}", chart::shortened(axis.name, chart::kLongestName),
                                    chart::decimal(gain_of(axis))));
     }
@@ -317,10 +318,7 @@ std::string gain_sentence(const study::TuneResult& result) {
   if (!judged) {
     return "The search ended before any settings were judged on all rows.";
   }
-  return gained.empty() ? fmt::format(
-                              "No gain: keep the defaults. No setting tried scores higher by "
-                              "more than {}.",
-                              kTuning.clear_r2)
+  return gained.empty() ? "No gain: keep the defaults. No settings drawn score clearly higher."
                         : "Tuned settings score higher: " + chart::list_text(gained) + ".";
 }
 

@@ -21,6 +21,7 @@ inline constexpr struct Tuning {
   double told_horizon_s = 10.0;     ///< the longest horizon that a verdict tells in words
   std::ptrdiff_t rows_since = 500;  ///< after a change, that are worth learning alone
   std::size_t most_changes = 6;     ///< lines about changes of the vehicle in a verdict
+  double told_skipped = 0.05;       ///< share of the rows: more left out are told
   double same_change_s = 15.0;      ///< between two beginnings of one change [s]
   double clear_gain = 0.05;         ///< of R², by the commands, in the first look at a log
   double structure_loss = 0.05;     ///< of R²: a larger loss to untied terms is a warning

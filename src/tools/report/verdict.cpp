@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <span>
@@ -61,7 +60,7 @@ bool commands_say_nothing(const study::Baselines& beside) {
 }
 
 std::string learned_line(const study::StreamResult& result) {
-  const std::string log = std::filesystem::path(result.source).filename().string();
+  const std::string log = chart::file_names(result.source);
   std::string text = fmt::format("Learned {} rows of {}", chart::grouped(result.samples_shown),
                                  chart::shortened(log, kTuning.longest_log));
   if (result.rate_hz > 0.0) {
@@ -69,6 +68,11 @@ std::string learned_line(const study::StreamResult& result) {
     text += minutes >= 1.0
                 ? fmt::format(" ({:.0f} min at {:.3g} Hz)", minutes, result.rate_hz)
                 : fmt::format(" ({:.0f} s at {:.3g} Hz)", minutes * kMinute, result.rate_hz);
+  }
+  if (static_cast<double>(result.rows_skipped) >
+      kTuning.told_skipped * static_cast<double>(result.rows_read)) {
+    text += fmt::format("; {} of {} rows lack a value and are left out",
+                        chart::grouped(result.rows_skipped), chart::grouped(result.rows_read));
   }
   if (result.interrupted) {
     text += fmt::format("; interrupted, {} rows are left",
@@ -163,7 +167,8 @@ std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
     lines.emplace_back(result.diagnosis.why_not.empty() ? "no change of the vehicle was found"
                                                         : "no change of the vehicle was found; "
                                                           "causes are not looked for, since the "
-                                                          "velocities are not known");
+                                                          "velocities are not known by name: --set "
+                                                          "states=… names one per target");
   }
   if (lines.size() > kTuning.most_changes) {
     const std::size_t more = lines.size() - kTuning.most_changes;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <vector>
 
 #include "chart/text_table.hpp"
@@ -29,7 +28,7 @@ std::string paragraph(const std::string& text) {
 }
 
 std::string short_name(const std::string& file) {
-  return chart::shortened(std::filesystem::path(file).filename().string(), kTuning.longest_log);
+  return chart::shortened(chart::file_names(file), kTuning.longest_log);
 }
 
 chart::TextTable contest_table(const study::Comparison& comparison) {

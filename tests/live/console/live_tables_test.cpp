@@ -53,6 +53,14 @@ TEST_F(LiveCommand, ColumnsOfATableMayHaveAnyName) {
   EXPECT_NE(content("out/model.json").find("\"thruster 1"), std::string::npos);
 }
 
+TEST_F(LiveCommand, UnitsOfTheHeaderStandInTheModel) {
+  write("dive.csv", log_of(600, "t [s],u [m/s],n [rpm],udot [m/s^2]"));
+  succeeded(run("live --replay dive.csv --speed max --out out"));
+  succeeded(run("learn dive.csv --split none --out of_learn"));
+  EXPECT_NE(model_of("out").find("\"rpm\""), std::string::npos);
+  EXPECT_EQ(model_of("out"), model_of("of_learn"));
+}
+
 TEST_F(LiveCommand, ATableIsTakenUpAgainWhereItWasLeft) {
   write("dive.csv", log_of(2000));
   Running running(folder_.path(),

@@ -93,6 +93,14 @@ void expect_mistake(const log::Dataset& data, const std::string& words) {
   EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 
+// By sampling: a wide window shrinks and shifts a derivative of a quick velocity.
+TEST(Plausibility, DerivativesOfTheVelocitiesAreRight) {
+  log::Dataset data = with_input(1, kDegree);
+  EXPECT_FALSE(log::target_mistakes(data, "auto").empty());
+  data.derived = {"rdot"};
+  EXPECT_TRUE(log::target_mistakes(data, "auto").empty());
+}
+
 TEST(Plausibility, AccelerationsOfTheVelocitiesAreNoMistake) {
   EXPECT_EQ(mistake_of(drive()), "");
   EXPECT_TRUE(log::clock_mistakes(drive()).empty());

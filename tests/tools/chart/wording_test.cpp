@@ -33,6 +33,15 @@ TEST(Wording, CutsBetweenCodePoints) {
   EXPECT_EQ(chart::shortened("ṙẇṗq", 1), "…");
 }
 
+TEST(Wording, FilesAreNamedWithoutTheirFolders) {
+  EXPECT_EQ(chart::file_names("dives/a.csv"), "a.csv");
+  EXPECT_EQ(chart::file_names("dives/a.csv, b.csv, /c/d.csv"), "a.csv, b.csv, d.csv");
+  EXPECT_EQ(chart::file_names("mission/"), "mission");
+  EXPECT_EQ(chart::file_names("../missions/first//"), "first");
+  EXPECT_EQ(chart::file_names("/"), "/");
+  EXPECT_EQ(chart::file_names(""), "");
+}
+
 TEST(Wording, UnitsReadAsPeopleWriteThem) {
   EXPECT_EQ(chart::unit_text("m s^-2"), "m/s²");
   EXPECT_EQ(chart::unit_text("s^-1"), "1/s");

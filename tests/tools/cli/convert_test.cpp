@@ -74,7 +74,8 @@ TEST_F(Convert, ABagIsNotReplacedAndAPipeIsNone) {
 
 TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {" --out x.csv", "--columns: is missing"},
+      {" --out x.csv",
+       "--columns: is missing; name columns as in /odom:twist.twist.linear.x, or give --config"},
       {" --columns /cmd:linear.x --out x.mcap", "belongs to CSV files"},
       {" --columns /cmd:linear.x --out x.txt", "a name ending in .csv or .mcap"},
       {" --columns /cmd:linaer.x --out x.csv", "did you mean 'linear.x'?"},

@@ -85,6 +85,15 @@ TEST_F(Health, RefusesWhatIsNoDateNoLogAndNoColumn) {
   expect_nothing_written("health dive.csv --glider wing=p", "is no NAME=COLUMN");
 }
 
+TEST_F(Health, FewLogsAreNoSignOfHealth) {
+  dive("dive.csv", 1, 1.0);
+  const testing::Outcome outcome = succeeded(run("health dive.csv --align none --out out"));
+  EXPECT_NE(outcome.out.find(": 1 episode, "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("too few episodes to tell a change"), std::string::npos);
+  EXPECT_NE(content("out/health.html").find("Too few episodes to tell a change."),
+            std::string::npos);
+}
+
 TEST_F(Health, ChecksEveryLogAndNotTheFirstAlone) {
   dive("a.csv", 1, 1.0);
   dive("b.csv", 2, 1.0);

@@ -190,7 +190,9 @@ TEST_F(Identify, TheNextCommandHasEveryOptionOfThisOne) {
                                    "--align none", "--only 0", "--frame FRD", "--for kelpie"}) {
     EXPECT_NE(next.find(option), std::string::npos) << option << "\n" << next;
   }
-  testing::succeeded(run(next + " --mass 70 --out again"));
+  EXPECT_NE(testing::succeeded(run(next + " --mass 70 --out again"))
+                .out.find("next: kelpie simulate SCENARIO.toml --out log.csv"),
+            std::string::npos);
   EXPECT_TRUE(exists("again/vehicle.toml"));
 }
 

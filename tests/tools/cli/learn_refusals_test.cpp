@@ -29,6 +29,13 @@ TEST_F(Learn, RefusesBadLogs) {
   expect_refused("text.csv --inputs u", "text.csv:3: u: 'two' is not a number");
   write("back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
   expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 (line 2) to 4 s");
+  expect_refused("back.csv", "to 4 s; rows have to be in the order of time");
+  std::string swapped = "u,t,n,udot\n";
+  for (int i = 0; i < 100; ++i) {
+    swapped += fmt::format("{},{},{},{}\n", i, 0.2 * std::sin(i), std::cos(i), std::sin(2.0 * i));
+  }
+  write("swapped.csv", swapped);
+  expect_refused("swapped.csv", "is this a column of time? --time names another");
   write("twice.csv", "t,u,u,udot\n0,1,7,2\n");
   expect_refused("twice.csv", "twice.csv:1: u: two columns have this name");
   write("short.csv", little_log(100));

@@ -68,6 +68,46 @@ TEST_F(Learn, AnswersWithAVerdictOrWithNothing) {
   EXPECT_EQ(testing::succeeded(run("learn log.csv --out out --quiet")).out, "");
 }
 
+// Followed literally, with the log that is at hand.
+TEST_F(Learn, TheNextCommandsKeepTheUnitsOfTheLog) {
+  const Outcome outcome = testing::succeeded(run(
+      "learn log.csv --units u=cm/s,udot=cm/s^2 --split none --out out" + testing::kFewSamples));
+  const auto follow = [&](const std::string& begin) {
+    const std::size_t at = outcome.out.find("kelpie " + begin);
+    ASSERT_NE(at, std::string::npos) << outcome.out;
+    std::string next = outcome.out.substr(at + 7, outcome.out.find("   (", at) - at - 7);
+    next.replace(next.find("LOG"), 3, "log.csv");
+    const Outcome followed = testing::succeeded(run(next + " --out " + begin.substr(0, 5)));
+    EXPECT_EQ(followed.err, "");
+    EXPECT_EQ(followed.out.find("R² -"), std::string::npos) << followed.out;
+  };
+  follow("predict");
+  follow("learn LOG");
+  EXPECT_EQ(outcome.out.find("kelpie rollout"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Learn, TheVerdictNamesTheLogsAndTheRowsLeftOut) {
+  std::filesystem::create_directories(folder_ / "a");
+  std::filesystem::create_directories(folder_ / "b");
+  std::string gaps = little_log(2400);
+  for (std::size_t row = 0, at = 0; (at = gaps.find('\n', at + 1)) + 1 < gaps.size(); ++row) {
+    if (row % 10 == 5) {  // no command
+      const std::size_t begin = gaps.find(',', gaps.find(',', at + 1) + 1) + 1;
+      gaps.erase(begin, gaps.find(',', begin) - begin);
+    }
+  }
+  write("a/one.csv", gaps);
+  write("b/two.csv", little_log(2400));
+  const std::string few = " --out out" + testing::kFewSamples;
+  EXPECT_NE(run("learn a/one.csv b/two.csv" + few).out.find(" rows of one.csv, two.csv ("),
+            std::string::npos);
+  const Outcome outcome = testing::succeeded(run("learn a/one.csv" + few));
+  EXPECT_NE(outcome.out.find("; 240 of 2,400 rows lack a value and are left out\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(run("learn b/two.csv" + few).out.find("lack a value"), std::string::npos);
+}
+
 TEST_F(Learn, AColumnOfTheLogSaysWhichRowsAreHeldOut) {
   // The last of every five blocks of 400 rows, as --split blocks takes them.
   std::istringstream rows(little_log(2400));

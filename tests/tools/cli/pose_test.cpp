@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -53,6 +54,23 @@ TEST_F(Poses, AreLearnedWithoutAVelocityInTheLog) {
   testing::succeeded(run("learn log.csv --config c.toml --out one" + testing::kFewSamples));
   EXPECT_EQ(json("one/model.json")["axes"], json("out/model.json")["axes"]);
   EXPECT_NE(content("a.csv").find("udot"), std::string::npos);
+}
+
+// Units go by the names of the log's columns, as --pose does.
+TEST_F(Poses, AnglesInDegreesAreConverted) {
+  log::Table table = log::read_csv(folder_ / "log.csv");
+  for (double& angle : table.columns[table.find("psi")]) {
+    angle *= 180.0 / std::numbers::pi;
+  }
+  log::write_csv(folder_ / "degrees.csv", table);
+  const std::string rest = " --inputs u,v,r,n,m --rate 5" + testing::kFewSamples;
+  testing::succeeded(run("learn log.csv --pose x,y,psi --out rad" + rest));
+  const double r2 = json("rad/result.json")["axes"][2]["r2"]["final"];
+  for (const std::string pose : {"x,y,psi", "x=x,y=y,yaw=psi"}) {
+    testing::succeeded(
+        run("learn degrees.csv --pose " + pose + " --units psi=deg --out degrees" + rest));
+    EXPECT_NEAR(json("degrees/result.json")["axes"][2]["r2"]["final"].get<double>(), r2, 0.01);
+  }
 }
 
 // The simulated Dagon's log as poses at 5 Hz: velocities are integrated by the trapezoidal rule,

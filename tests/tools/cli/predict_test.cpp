@@ -127,6 +127,24 @@ TEST_F(Predict, TimesInMillisecondsAndTimeStampsAreTimes) {
   EXPECT_EQ(predictions("stamps.csv"), expected);
 }
 
+TEST_F(Predict, AnotherUnitThanTheLearnedIsTold) {
+  const std::string rows = content("log.csv").substr(content("log.csv").find('\n'));
+  write("si.csv", "t,u [m/s],n,udot" + rows);
+  write("other.csv", "t,u [cm/s],n,udot" + rows);
+  testing::succeeded(run("learn si.csv --out out"));
+  for (const std::string command : {"predict", "rollout"}) {
+    const std::string model = " --model out/model.json --out p.csv ";
+    EXPECT_EQ(testing::succeeded(run(command + " si.csv" + model)).err, "");
+    EXPECT_NE(run(command + " other.csv" + model)
+                  .err.find("other.csv: WARNING: u is in cm/s, and the model learned m/s; --units "
+                            "'u=cm s^-1' converts"),
+              std::string::npos);
+    EXPECT_EQ(run(command + " other.csv --units 'u=cm s^-1'" + model).err.find("learned m/s"),
+              std::string::npos);
+    std::filesystem::remove_all(folder_ / "p.csv");
+  }
+}
+
 TEST_F(Predict, RowsHeldOutAreJudgedApartFromThoseLearned) {
   const Outcome outcome = testing::succeeded(predict("log.csv"));
   const auto result = parsed("out/result.json");

@@ -83,6 +83,14 @@ TEST_F(TuneCommand, SaysWhetherThereIsAGainAndWhatToRunNext) {
   EXPECT_EQ(said().find("Searched"), std::string::npos) << said();
 }
 
+// Logs that are tuned together need not fit into one stream.
+TEST_F(TuneCommand, TheNextCommandLearnsOneOfSeveralLogs) {
+  write_log("more.csv", "u,n,udot", 700, 0.5);
+  ASSERT_EQ(tune((folder_ / "more.csv").string() + " --search k=10:10.0001"), 0) << said();
+  EXPECT_NE(said().find("/log.csv --config"), std::string::npos) << said();
+  EXPECT_EQ(said().find("more.csv --config"), std::string::npos) << said();
+}
+
 // tuned.toml lacks the [log] that the next command needs.
 TEST_F(TuneCommand, TheNextCommandLearnsALogThatItsConfigurationExplains) {
   write_log("named.csv", "forward,n,slope", 700, 0.5);

@@ -41,6 +41,30 @@ TEST(NextSteps, TheLogKeepsItsOptions) {
             "kelpie rollout 'a dive.csv' --rate 4 --model model.json");
 }
 
+std::string commands_of(const study::StreamResult& result, const report::LogWords& log) {
+  std::string text;
+  for (const report::NextStep& step : report::after_learning(result, log, "model.json")) {
+    text += step.command + "\n";
+  }
+  return text;
+}
+
+TEST(NextSteps, AnotherLogIsReadAsThisOne) {
+  EXPECT_EQ(commands_of(synthetic::stream(2),
+                        {"dive.csv", {}, " --rate 4 --split tail", " --rate 4 --units r=deg/s"}),
+            "kelpie rollout dive.csv --rate 4 --split tail --model model.json\n"
+            "kelpie predict LOG --rate 4 --units r=deg/s --model model.json\n"
+            "kelpie learn LOG --rate 4 --units r=deg/s --from model.json\n");
+}
+
+// `kelpie rollout` needs velocities, and rows to judge by.
+TEST(NextSteps, NoCommandIsToldThatWouldBeRefused) {
+  study::StreamResult result = synthetic::stream(2);
+  EXPECT_EQ(commands_of(result, {.file = "dive.csv"}).find("rollout"), std::string::npos);
+  result.diagnosis.why_not = "no velocities are known";
+  EXPECT_EQ(commands_of(result, {"dive.csv", {}, ""}).find("rollout"), std::string::npos);
+}
+
 // The rows before the damage are of the same vehicle.
 TEST(NextSteps, AThrusterThatIsBackLeavesNoRowsOut) {
   EXPECT_EQ(first_command({CauseKind::thruster, 4, 0.99, 0.97, 1.01}),

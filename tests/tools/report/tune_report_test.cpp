@@ -9,6 +9,7 @@
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "report/small_search.hpp"
+#include "report/verdicts.hpp"
 
 namespace kelpie::tune_report_test {
 namespace {
@@ -73,11 +74,15 @@ TEST(TuneReport, ThePageShowsCandidatesByScoreAndWorkAndTheCheapOne) {
 TEST(TuneReport, ThePageBeginsWithTheGain) {
   study::TuneResult result = small_search();
   for (study::TunedAxis& axis : result.axes) {
-    axis.all.tuned = 0.905;
+    axis.all.tuned = axis.all.base;
   }
   const std::string none = report::tune_html(result, kHeader);
   EXPECT_LT(none.find("No gain: keep the defaults."), none.find("<table"));
   EXPECT_EQ(none.find("--config tuned.toml"), std::string::npos);
+  result.axes[1].all.tuned = result.axes[1].all.base + 0.006;  // as the verdict has it
+  EXPECT_NE(report::tune_html(result, kHeader).find("score higher: vdot by 0.006."),
+            std::string::npos);
+  EXPECT_NE(report::tune_verdict(result).find("score higher by up to 0.006"), std::string::npos);
   result.axes[1].all.tuned = 0.95;
   const std::string some = report::tune_html(result, kHeader);
   EXPECT_LT(some.find("Tuned settings score higher: vdot by 0.050."), some.find("<table"));
