@@ -13,6 +13,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 from setuptools import Extension, setup
@@ -88,7 +89,7 @@ def take_libraries(module: Path) -> None:
         names[name] = f"{stem}-{hashlib.sha256(path.read_bytes()).hexdigest()[:8]}.so{rest}"
         shutil.copyfile(path, folder / names[name])
         (folder / names[name]).chmod(0o644)
-        take_licence(path, folder)
+    take_licences(libraries.values(), folder)
     subprocess.run(["strip", "--strip-unneeded", str(module)], check=True)
     replacements = [word for pair in names.items() for word in ("--replace-needed", *pair)]
     for file in [module, *(folder / name for name in names.values())]:
@@ -99,13 +100,15 @@ def take_libraries(module: Path) -> None:
             subprocess.run(["patchelf", *change, str(file)], check=True)
 
 
-def take_licence(library: Path, folder: Path) -> None:
-    """Puts the licence of a library's Debian package beside the library's copy."""
-    for path in (library, Path("/", *library.parts[2:])):  # /usr/lib is /lib, too
-        told = subprocess.run(["dpkg-query", "--search", str(path)], check=False,
-                              capture_output=True, text=True).stdout
-        for package in re.findall(r"^([^:\s]+)[^/]*: /", told):
-            shutil.copyfile(f"/usr/share/doc/{package}/copyright", folder / f"{package}.copyright")
+def take_licences(libraries: Iterable[Path], folder: Path) -> None:
+    """Puts the licences of libraries' Debian packages beside the libraries' copies."""
+    paths = {spelling for library in libraries  # /usr/lib is /lib, too
+             for spelling in (str(library), str(Path("/", *library.parts[2:])))}
+    # One call for all libraries: a call reads the list of every installed file.
+    told = subprocess.run(["dpkg-query", "--search", *sorted(paths)], check=False,
+                          capture_output=True, text=True).stdout
+    for package in set(re.findall(r"^([^:,\s]+)[:,]", told, re.M)):
+        shutil.copyfile(f"/usr/share/doc/{package}/copyright", folder / f"{package}.copyright")
 
 
 def portable_wheel() -> type:

@@ -49,7 +49,7 @@ void write_fmu(const fs::path& file, const TrainedModel& model, const FmuOptions
 }
 
 // A boat with two propellers, of which a model is learned.
-TrainedModel learned_boat(bool with_actuators = false) {
+TrainedModel learned_boat() {
   RandomStream random(7, "boat");
   DynamicsModel model(kInputs, kTargets, ModelSettings::from_preset("small", kTargets.size()));
   std::array<double, 5> x{};
@@ -72,14 +72,17 @@ TrainedModel learned_boat(bool with_actuators = false) {
   }
   TrainedModel trained = model.trained();
   trained.alignment.commands = {"th1", "th2"};
-  if (with_actuators) {
-    trained.alignment.actuators = {{.lag_s = 0.8}, {.neutral = 0.1, .delay_s = 0.2}};
-  }
   return trained;
 }
 
 const TrainedModel& boat() {
   static const TrainedModel model = learned_boat();
+  return model;
+}
+
+TrainedModel boat_with_actuators() {
+  TrainedModel model = boat();
+  model.alignment.actuators = {{.lag_s = 0.8}, {.neutral = 0.1, .delay_s = 0.2}};
   return model;
 }
 
@@ -161,6 +164,18 @@ class Host {
   std::unique_ptr<void, Close> library_;
 };
 
+/// A unit of the boat: writing one takes a second.
+const Host& boat_host() {
+  static const Host host(boat());
+  return host;
+}
+
+/// A unit of the boat with actuators.
+const Host& actuators_host() {
+  static const Host host(boat_with_actuators());
+  return host;
+}
+
 /// An instance of a unit, with the calls that the tests need.
 class Instance {
  public:
@@ -220,7 +235,7 @@ constexpr fmi2ValueReference kSurge = 0, kThrust1 = 3, kThrust2 = 4, kPositionX 
                              kUdot = 8;
 
 TEST(Fmu, SaysAccelerationsOfTheModelAndVelocitiesOfARollout) {
-  const Host host(boat());
+  const Host& host = boat_host();
   Instance instance(host);
   std::vector<double> x{0.2, -0.1, 0.05, 0.6, -0.3};
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -273,7 +288,7 @@ TEST(Fmu, APoseFollowsFromTheVelocities) {
 }
 
 TEST(Fmu, CommandsGoThroughTheActuators) {
-  const Host host(learned_boat(true));
+  const Host& host = actuators_host();
   Instance instance(host);
   EXPECT_EQ(instance.get(kThrust2), 0.1);  // at rest in its neutral point
   instance.start();
@@ -287,7 +302,7 @@ TEST(Fmu, CommandsGoThroughTheActuators) {
 
 // When a command of a host with this step first moves the vehicle whose propeller is 0.2 s late.
 double seconds_until_it_moves(double step_s) {
-  fmu::Vehicle vehicle(learned_boat(true));
+  fmu::Vehicle vehicle(boat_with_actuators());
   vehicle.start(50.0);
   const double before = vehicle.value(kUdot);
   for (int step = 0; step * step_s < 0.5; ++step) {
@@ -308,7 +323,7 @@ TEST(Fmu, ADelayIsWholeHoweverQuicklyTheHostSteps) {
 }
 
 TEST(Fmu, OneLongStepIsManyShortOnes) {
-  const Host host(learned_boat(true));
+  const Host& host = actuators_host();
   Instance far(host);
   Instance near(host);
   for (Instance* const instance : {&far, &near}) {
@@ -325,7 +340,7 @@ TEST(Fmu, OneLongStepIsManyShortOnes) {
 }
 
 TEST(Fmu, AStateKeptIsComeBackTo) {
-  const Host host(boat());
+  const Host& host = boat_host();
   Instance instance(host);
   instance.start();
   instance.set(kThrust1, 0.7);
@@ -347,7 +362,7 @@ TEST(Fmu, AStateKeptIsComeBackTo) {
 }
 
 TEST(Fmu, WhatIsNoCallIsRefusedAndChangesNothing) {
-  const Host host(boat());
+  const Host& host = boat_host();
   EXPECT_EQ(host.instantiate("{another}"), nullptr);
   EXPECT_NE(last_message.find("guid"), std::string::npos);
   Instance instance(host);
