@@ -105,8 +105,8 @@ class Diagnosis {
   static constexpr std::size_t kMostFindings = 64;  ///< of findings()
 
   /// Thrust of every thruster in the last minute over the thrust in the reference; 1: unchanged.
-  /// Empty before ready(). The interval of an idle thruster is infinite, and of every thruster after
-  /// the first 24 less the number of axes.
+  /// Empty before ready(). The interval of an idle thruster is infinite, and of every thruster
+  /// after the first 24 less the number of axes.
   const std::vector<Cause>& health() const;
 
   bool ready() const;  ///< Whether there are enough rows for a reference.
