@@ -213,7 +213,7 @@ std::optional<Mistake> clock_mistake(const Dataset& data, const std::vector<Targ
   }
   const double ratio = quantile(ratios, 0.5);
   const bool certain = std::ranges::min(ratios) > kLimits.certain_clock;
-  const bool shared = std::ranges::all_of(ratios, [&](double one) { return near(one, ratio); });
+  const bool shared = std::ranges::all_of(ratios, [&](double own) { return near(own, ratio); });
   // Of one target a small factor tells of units as well.
   if (!certain && (ratios.size() == 1 || !shared || is_plain(ratio))) {
     return std::nullopt;
@@ -328,7 +328,7 @@ std::optional<Mistake> long_gap(const Dataset& data) {
 
 std::vector<Mistake> clock_mistakes(const Dataset& data) {
   std::vector<Mistake> found;
-  for (auto& mistake : {repeated_stamps(data), long_gap(data)}) {
+  for (const auto& mistake : {repeated_stamps(data), long_gap(data)}) {
     if (mistake) {
       found.push_back(*mistake);
     }

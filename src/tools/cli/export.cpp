@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -123,10 +124,11 @@ void check_wishes(const ExportArguments& options) {
   if (!options.c_file.empty() || !options.live.empty()) {
     return;
   }
-  const std::pair<const char*, bool> wishes[]{{"--header", !options.header.empty()},
-                                              {"--float", options.code.single},
-                                              {"--assess", options.code.assess},
-                                              {"--casadi", options.code.casadi}};
+  const auto wishes =
+      std::to_array<std::pair<const char*, bool>>({{"--header", !options.header.empty()},
+                                                   {"--float", options.code.single},
+                                                   {"--assess", options.code.assess},
+                                                   {"--casadi", options.code.casadi}});
   for (const auto& [option, is_given] : wishes) {
     require(!is_given, option, "needs --c FILE or --live FILE");
   }
