@@ -21,7 +21,6 @@
 #include "live/row_reader.hpp"
 #include "live/tuning.hpp"
 #include "log/draft.hpp"
-#include "log/read_log.hpp"
 #include "study/identification.hpp"
 
 namespace kelpie::live {
@@ -323,16 +322,13 @@ Fields Configuration::identity() const {
   return fields;
 }
 
-std::map<std::string, std::string> Configuration::units() const {
-  std::map<std::string, std::string> units;
+std::map<std::string, Unit> Configuration::units() const {
   if (rows) {
-    for (const auto& [column, unit] : rows->units) {
-      units.emplace(column, unit.text());
-    }
-    return units;
+    return rows->units;
   }
+  std::map<std::string, Unit> units;
   for (const auto& [column, unit] : log::row_units(plan, log.roles)) {
-    units.emplace(column, log::si_unit(file, column, unit).first.text());
+    units.emplace(column, log::si_unit(file, column, unit).first);
   }
   return units;
 }

@@ -12,6 +12,7 @@
 
 #include "file/toml.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/motion/unit.hpp"
 #include "kelpie/stream/stream_plan.hpp"
 #include "log/dataset.hpp"
 #include "log/read_log.hpp"
@@ -79,7 +80,7 @@ struct Configuration {
   /// file ("log.rate").
   Fields identity() const;
   /// Units of columns, as `kelpie learn` has them of the same rows.
-  std::map<std::string, std::string> units() const;
+  std::map<std::string, Unit> units() const;
   /// Topics and fields of the sources and of LiveSettings::valid, without repeats.
   std::vector<std::string> columns() const;
 };

@@ -317,7 +317,8 @@ bool LiveLearner::write_model() const {
   trained.alignment = alignment_.alignment();
   file::write_file_whole(
       folder_ / "model.json",
-      format::model_json(trained, {.units = configuration_.units(), .doubt = progress_.doubt}));
+      format::model_json(trained, {.units = format::unit_texts(configuration_.units()),
+                                   .doubt = progress_.doubt}));
   return true;
 }
 

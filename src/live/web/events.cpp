@@ -41,9 +41,7 @@ log::Dataset names_of(const live::Configuration& configuration) {
   log::Dataset names;
   names.input_names = configuration.plan.inputs;
   names.target_names = configuration.plan.targets;
-  for (const auto& [column, unit] : configuration.units()) {
-    names.units.emplace(column, Unit::parse(unit));
-  }
+  names.units = configuration.units();
   return names;
 }
 

@@ -226,14 +226,6 @@ DynamicsModel resumed_model(DynamicsModel fresh, const format::RunState& earlier
   }
 }
 
-format::ColumnUnits unit_texts(const log::Dataset& data) {
-  format::ColumnUnits units;
-  for (const auto& [column, unit] : data.units) {
-    units.emplace(column, unit.text());
-  }
-  return units;
-}
-
 // Returns whether a model is among the results.
 bool write_results(const fs::path& folder, const study::StreamResult& result,
                    const DynamicsModel& model, const std::vector<format::LearnedLog>& learned,
@@ -245,7 +237,7 @@ bool write_results(const fs::path& folder, const study::StreamResult& result,
     TrainedModel trained = model.trained();
     trained.alignment = result.alignment.alignment;
     const std::string text =
-        format::model_json(trained, {unit_texts(log.plan.data), log.doubt, learned});
+        format::model_json(trained, {format::unit_texts(log.plan.data.units), log.doubt, learned});
     warn_unless_readable("model.json", [&] {
       format::parse_model_json(text, "model.json");
       files["model.json"] = text;

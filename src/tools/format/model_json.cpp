@@ -107,6 +107,14 @@ ColumnUnits units_in(const JsonNode& node, const Json& json) {
 
 }  // namespace
 
+ColumnUnits unit_texts(const std::map<std::string, Unit>& units) {
+  ColumnUnits texts;
+  for (const auto& [column, unit] : units) {
+    texts.emplace(column, unit.text());
+  }
+  return texts;
+}
+
 std::string model_json(const TrainedModel& model, const ModelInfo& info) {
   Json json{{"format", kModelFormat},
             {"version", kModelVersion},

@@ -8,11 +8,14 @@
 
 #include "format/learned_logs.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/unit.hpp"
 
 namespace kelpie::format {
 
-/// Units of columns, in the syntax of Unit::parse; for display only.
+/// Units of columns, in the syntax of Unit::parse; for display and warnings.
 using ColumnUnits = std::map<std::string, std::string>;
+
+ColumnUnits unit_texts(const std::map<std::string, Unit>& units);
 
 /// What a model.json says of the model besides the model itself.
 struct ModelInfo {
