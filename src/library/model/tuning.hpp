@@ -81,6 +81,7 @@ inline constexpr struct ModelTuning {
   /// lasts up to 30 s, and from a vehicle that sets off, which is believed within 10 s; the other
   /// values: by hand.
   struct Guard {
+    int early_samples = 10;             ///< of a scale until `warmup` samples give one; by hand
     double believed_s = 0.5;            ///< s of implausible samples before a candidate learns them
     std::int64_t least_refused = 4;     ///< samples, the same where rows are rare
     double share_s = 30.0;              ///< s, memory of the share of time with implausible samples
