@@ -117,9 +117,8 @@ bool is_refused(const Decision& decision) {
   return decision.verdict == Verdict::invalid || decision.verdict == Verdict::implausible;
 }
 
-// Whether the prediction was made, and the sample learned, by the same model.
 bool is_settled(const Decision& decision) {
-  return decision.had_model && decision.verdict != Verdict::held_back;
+  return decision.had_model && !decision.early;
 }
 
 bool is_news(const Decision& decision) {
@@ -462,7 +461,10 @@ void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastMode
 }
 
 bool DynamicsModel::ready() const {
-  return std::ranges::all_of(parts_->axes, [](const auto& axis) { return axis.status().ready; });
+  return std::ranges::all_of(parts_->axes, [](const GuardedAxis& axis) {
+    const Status status = axis.status();
+    return status.ready && !status.early;
+  });
 }
 
 std::string DynamicsModel::save() const {

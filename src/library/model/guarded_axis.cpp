@@ -162,15 +162,16 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   const bool another_serves = refused != candidate_serves_;  // than the axis that learns
   const Prediction said = refused || another_serves ? assess(x) : Prediction{};
   const bool had_model = another_serves && in_service().status().ready;
+  const bool early = early_;
   Decision decision = refused ? learn_doubted(x, y, t, said) : learn_trusted(x, y, t);
   if (another_serves) {
     decision.prediction = said;
     decision.had_model = had_model;
   }
+  decision.early = early && decision.had_model;
   feed();
   look(t);
-  candidate_serves_ =
-      early_ || (probation_ && trusted().scaling() != nullptr && trusted().far(x));
+  candidate_serves_ = early_ || (probation_ && trusted().scaling() != nullptr && trusted().far(x));
   return decision;
 }
 
@@ -449,6 +450,7 @@ bool GuardedAxis::too_large(const DynamicsAxis& axis, const ThinnedRows& rows) {
 
 Status GuardedAxis::status() const {
   Status status = in_service().status();
+  status.early = early_ && status.ready;
   status.tally = trusted().status().tally;
   status.tally.add(gone_);
   if (probation_) {
