@@ -110,7 +110,8 @@ TEST_F(LiveMavlink, ACheckAsksTheVehicleAndWritesNothing) {
   Running live(folder_.path(), {"live", "--mavlink", "udp:" + port, "--check", "--out", "out"});
   Vehicle vehicle(port);
   vehicle.rov.is_armed = true;
-  vehicle.rov.parameters = {{"FRAME_CONFIG", 1.0}};
+  vehicle.rov.parameters = {
+      {"FRAME_CONFIG", 1.0}, {"MOT_1_DIRECTION", 1.0}, {"MOT_2_DIRECTION", 1.0}};
   for (int output = 1; output <= 16; ++output) {
     vehicle.rov.parameters["SERVO" + std::to_string(output) + "_FUNCTION"] =
         output < 3 ? 32.0 + output : 0.0;

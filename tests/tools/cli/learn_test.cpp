@@ -277,7 +277,7 @@ TEST_F(Learn, ALogMayFollowAnyOption) {
 }
 
 TEST_F(Learn, AFrameWithoutAVehicleFileIsRefused) {
-  expect_refused("log.csv --frame nonsense", "--frame");
+  expect_refused("log.csv --frame nonsense", "'nonsense' is no frame");
   expect_refused("log.csv --frame FRD", "--frame: says how a vehicle file of --nominal is turned");
 }
 
