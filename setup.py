@@ -55,8 +55,10 @@ class CMakeBuild(build_ext):
         # libmatio would bring a client of HTTP, Kerberos and LDAP into a portable wheel.
         without = ["-DKELPIE_WITH_MATLAB=OFF"] if PORTABLE else []
         # The same bytes from any folder.
-        maps = (f"-ffile-prefix-map={ROOT}=.", f"-ffile-prefix-map={folder}=build")
-        flags = " ".join([os.environ.get("CXXFLAGS", ""), *map(shlex.quote, maps)])
+        roots = ((ROOT, "."), (folder, "build"))
+        flags = " ".join([os.environ.get("CXXFLAGS", ""),
+                          *(f"-ffile-prefix-map={shlex.quote(str(path))}={name}"
+                            for path, name in roots)])
         subprocess.run(
             ["cmake", "-S", str(ROOT), "-B", str(folder), *ninja, "-DCMAKE_BUILD_TYPE=Release",
              "-DKELPIE_BUILD_PYTHON=ON", "-DKELPIE_BUILD_LIVE=OFF", "-DKELPIE_BUILD_TESTS=OFF",

@@ -68,11 +68,7 @@ TEST_F(Study, HasTheFiguresOfLearnWhateverTheThreads) {
   EXPECT_NE(outcome.out.find("\nvehicles: no cause of a change was found\n"), std::string::npos)
       << outcome.out;
   EXPECT_NE(outcome.out.find("\nnext:   kelpie study fleet.toml"), std::string::npos);
-  std::filesystem::create_directory(folder_ / "my fleet");
-  write_text(folder_ / "my fleet/f.toml",
-             "logs = \"dives/auv2/{mission}.csv\"\n" +
-                 std::string(testing::kLittleStudy)
-                     .substr(std::string(testing::kLittleStudy).find("splits")));
+  testing::write_little_study(folder_ / "my fleet");
   const Outcome spaces = kelpie(folder_.path(), "study 'my fleet/f.toml' --out 'my out'");
   EXPECT_NE(
       spaces.out.find("kelpie study 'my fleet/f.toml' --out FOLDER --against 'my out/study.json'"),
