@@ -102,6 +102,10 @@ std::size_t require_name(std::string_view field, std::string_view name, std::str
   return static_cast<std::size_t>(found - known.begin());
 }
 
+std::string without_brackets(const std::string& host) {
+  return host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
+}
+
 bool parse_number(std::string_view text, double& value) {
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') {
     text.remove_prefix(1);

@@ -190,9 +190,9 @@ inline constexpr struct ModelTuning {
   struct Rollout {
     double diffusion = 0.5;  ///< most growth of errors beyond practised ages, as a power of the
                              ///< age: a random walk's
-    double beyond = 0.05;  ///< of the range seen, outside which an input is new; by hand
-    double leeway = 0.5;   ///< of the range seen, bound of velocities; by hand
-    double probe = 1e-4;   ///< of the range seen, step of numerical slopes; by hand
+    double beyond = 0.05;    ///< of the range seen, outside which an input is new; by hand
+    double leeway = 0.5;     ///< of the range seen, bound of velocities; by hand
+    double probe = 1e-4;     ///< of the range seen, step of numerical slopes; by hand
   } rollout;
 
   /// The limit of the work of an update (model/work_limit.hpp, docs/measured/performance.md).
