@@ -69,10 +69,10 @@ TEST_F(Study, HasTheFiguresOfLearnWhateverTheThreads) {
       << outcome.out;
   EXPECT_NE(outcome.out.find("\nnext:   kelpie study fleet.toml"), std::string::npos);
   testing::write_little_study(folder_ / "my fleet");
-  const Outcome spaces = kelpie(folder_.path(), "study 'my fleet/f.toml' --out 'my out'");
-  EXPECT_NE(
-      spaces.out.find("kelpie study 'my fleet/f.toml' --out FOLDER --against 'my out/study.json'"),
-      std::string::npos)
+  const Outcome spaces = kelpie(folder_.path(), "study 'my fleet/fleet.toml' --out 'my out'");
+  EXPECT_NE(spaces.out.find(
+                "kelpie study 'my fleet/fleet.toml' --out FOLDER --against 'my out/study.json'"),
+            std::string::npos)
       << spaces.out << spaces.err;
   EXPECT_EQ(outcome.out.find("Learners, over all vehicles"), std::string::npos);
   ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --threads 3 --out three").exit_code, 0);
