@@ -162,7 +162,7 @@ class GuardedAxis final : public OnlineRegressor {
   bool early_;             ///< the candidate learns as well, until the trusted axis has learned the
                            ///< samples held back
   bool candidate_serves_;  ///< early, or the inputs of the last sample were far away
-  ExpectedTarget expected_target_;      ///< whatever axis is trusted
+  ExpectedTarget expected_target_;  ///< whatever axis is trusted
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small
   bool trusted_last_ = true;
 

@@ -141,7 +141,7 @@ inline constexpr struct ModelTuning {
 
   /// ChangeMonitor; docs/method/committee.md, Change: a prototype on training rows of 24 streams.
   struct Change {
-    double step_s = 0.24;            ///< s between two rows that count: from 0.2, 0.24 (a catamaran)
+    double step_s = 0.24;            ///< s between two rows that count: from 0.2, 0.24
     double almost = 0.999;           ///< of a step, which is over: as of Steady
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
     double prior = 1.0;              ///< of a term without effect [samples]; by hand
