@@ -101,7 +101,7 @@ TEST(ChangeMonitor, BelievesInAHalvedThrusterAtAnyRate) {
   }
 }
 
-// 0.8 − 0.6 is less than 0.2 in numbers of a computer.
+// Stamps since 1970 are rounded to 0.2 µs.
 TEST(ChangeMonitor, RowsCountHoweverTheirStampsAreRounded) {
   const auto saved = [](ChangeMonitor& monitor) {
     Archive archive;
@@ -109,12 +109,12 @@ TEST(ChangeMonitor, RowsCountHoweverTheirStampsAreRounded) {
     return archive.bytes();
   };
   PlanarDrive drive;
-  drive.drive(1, 100, 0.2);
+  drive.drive(1, 100, 0.24);
   for (const double zero : {0.0, 1.7e9}) {
     ChangeMonitor monitor = make_monitor();
     for (std::size_t i = 0; i < drive.x.size(); ++i) {
       const std::string before = saved(monitor);
-      monitor.update(drive.x[i], drive.y[i], zero + 0.2 * static_cast<double>(i));
+      monitor.update(drive.x[i], drive.y[i], zero + 0.24 * static_cast<double>(i));
       EXPECT_NE(saved(monitor), before) << zero << " " << i;
     }
   }
