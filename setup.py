@@ -10,6 +10,7 @@ import hashlib
 import os
 import platform
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -53,8 +54,11 @@ class CMakeBuild(build_ext):
         ninja = ["-G", "Ninja"] if shutil.which("ninja") else []
         # libmatio would bring a client of HTTP, Kerberos and LDAP into a portable wheel.
         without = ["-DKELPIE_WITH_MATLAB=OFF"] if PORTABLE else []
-        flags = f"{os.environ.get('CXXFLAGS', '')} -ffile-prefix-map={ROOT}=. " \
-                f"-ffile-prefix-map={folder}=build"  # the same bytes from any folder
+        # The same bytes from any folder.
+        roots = ((ROOT, "."), (folder, "build"))
+        flags = " ".join([os.environ.get("CXXFLAGS", ""),
+                          *(f"-ffile-prefix-map={shlex.quote(str(path))}={name}"
+                            for path, name in roots)])
         subprocess.run(
             ["cmake", "-S", str(ROOT), "-B", str(folder), *ninja, "-DCMAKE_BUILD_TYPE=Release",
              "-DKELPIE_BUILD_PYTHON=ON", "-DKELPIE_BUILD_LIVE=OFF", "-DKELPIE_BUILD_TESTS=OFF",

@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 
 here=$(dpkg --print-architecture)
 architecture=${1:-$here} out=${2:-build/packages} place=${KELPIE_PLACE:-/build}
-command -v mmdebstrap dpkg-source >/dev/null ||
+{ command -v mmdebstrap && command -v dpkg-source; } >/dev/null ||
   { echo "Install these first: apt-get install mmdebstrap dpkg-dev" >&2; exit 1; }
 [ -e build/uplot/package ] ||
   { echo "scripts/setup.sh fetches uPlot, which the pages need" >&2; exit 1; }

@@ -50,7 +50,7 @@ enum { KELPIE_MOST_INPUTS = 64, KELPIE_MOST_TARGETS = 64 };
 /**
  * Makes a model of the named columns, to be freed by kelpie_free(). Velocities are recognised by
  * their names: reference/settings.md, `states`. `settings` has lines `name = value` for settings
- * that differs from its default, with one value for all targets, or values for each target
+ * that differ from their defaults, with one value for all targets, or values for each target
  * separated by commas; the line `preset = name` gives the defaults. `settings` may be null.
  * Allocates all memory of the model, except as update() of kelpie::DynamicsModel says.
  */
@@ -269,6 +269,7 @@ kelpie_status kelpie_trained_assess(const kelpie_trained* model, const double* x
 kelpie_status kelpie_trained_predict_with_jacobian(const kelpie_trained* model, const double* x,
                                                    size_t inputs, double* y, size_t targets,
                                                    double* jacobian);
+
 /** Velocities through outages of the velocity log: kelpie::DeadReckoning
  * (method/open_loop.md). One thread at a time. */
 typedef struct kelpie_reckoning kelpie_reckoning;

@@ -32,6 +32,7 @@ class Learner(Parameters):
     """Base of OnlineSVR and DynamicsModel."""
 
     _model: Union[_kelpie.LiveModel, _kelpie.TrainedModel]  # there once fitted
+    _notes: Optional[tuple[dict[str, str], str]] = None  # units and doubt of the model.json before
     _clock: Clock
     _flat: bool  # whether y is of shape (n,)
     _by_name = False  # whether columns of data frames are chosen by the names of the inputs
@@ -92,6 +93,8 @@ class Learner(Parameters):
         _arrays.require_same_columns(self, seen, rows)
         if isinstance(self._model, _kelpie.TrainedModel):
             start = self._clock.times(given.t, len(rows), 0, self.rate)[0]
+            if isinstance(self._model, _kelpie.SavedModel):
+                self._notes = (self._model.units, self._model.doubt)
             self._model = _kelpie.LiveModel.resume_from(self._model, start)
         return self._learn(self._model, rows, targets, given)
 
@@ -308,10 +311,14 @@ class Learner(Parameters):
 
     def _trained(self) -> _kelpie.TrainedModel:
         model = self._fitted()
-        return model.trained() if isinstance(model, _kelpie.LiveModel) else model
+        if isinstance(model, _kelpie.TrainedModel):
+            return model
+        trained = model.trained()
+        return trained.noted(*self._notes) if self._notes else trained
 
     def _adopt(self, model: Union[_kelpie.LiveModel, _kelpie.TrainedModel], flat: bool) -> None:
         self._model = model
+        self._notes = None
         self._flat = flat
         self._clock = Clock()
         self.n_features_in_ = len(model.inputs)

@@ -118,7 +118,7 @@ def _study(command: str, log: Log, settings: Optional[Mapping[str, Any]],
     with tempfile.TemporaryDirectory(prefix="kelpie-") as temporary:
         folder = Path(temporary)
         logs = log if isinstance(log, (list, tuple)) else [log]
-        files, names = zip(*(_file(one, folder / f"{place}.csv", options)
+        files, names = zip(*(_file(one, folder / f"kelpie-frame-{place}.csv", options)
                              for place, one in enumerate(logs)))
         into = folder / "out" if out is None else Path(out)
         words = [command, *files, *_words(options), "--out", str(into)]
@@ -128,6 +128,8 @@ def _study(command: str, log: Log, settings: Optional[Mapping[str, Any]],
         def named(text: str) -> str:
             for file, name in zip(files, names):
                 text = text.replace(file, name)
+                if Path(file).parent == folder:  # texts may have the name of the file alone
+                    text = text.replace(Path(file).name, Path(name).name)
             return text
 
         try:
@@ -138,13 +140,15 @@ def _study(command: str, log: Log, settings: Optional[Mapping[str, Any]],
             if str(error).startswith("interrupted"):
                 raise KeyboardInterrupt from None
             raise
-        said = named(said)
-        if out is None:  # lines about files that are gone
-            said = "\n".join(line for line in said.split("\n") if str(into) not in line)
         written = _FILES[command]
         text = named((into / written.numbers).read_text(encoding="utf-8"))
         is_json = written.numbers.endswith(".json")
         result = StudyResult(json.loads(text) if is_json else _kelpie.parse_yaml(text))
+        if result.get("interrupted"):  # part of the log: files of `out` stay
+            raise KeyboardInterrupt
+        said = named(said)
+        if out is None:  # lines about files that are gone
+            said = "\n".join(line for line in said.split("\n") if str(into) not in line)
         result.text = said
         result.page = named((into / written.page).read_text(encoding="utf-8"))
         if command == "learn" and (into / "model.json").exists():
@@ -187,8 +191,12 @@ def _file(log: Log, file: Path, options: dict[str, Any]) -> tuple[str, str]:
 
 def _cells(values: Any) -> Sequence[Any]:
     if values.dtype.kind == "M":
-        return np.datetime_as_string(values, timezone="UTC").tolist()
-    return values.tolist()
+        texts = np.datetime_as_string(values, timezone="UTC").astype(object)
+        texts[np.isnat(values)] = ""
+        return texts.tolist()  # type: ignore[no-any-return]
+    # NA of pandas equals nothing, not even itself.
+    return ["" if type(value).__name__ in ("NAType", "NaTType") else value
+            for value in values.tolist()]
 
 
 def _rows(result: StudyResult) -> list[dict[str, Any]]:

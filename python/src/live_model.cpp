@@ -221,9 +221,7 @@ TrainedModel LiveModel::trained() const {
   const py::gil_scoped_release release;
   const std::shared_lock lock(mutex_);
   if (!model_.ready()) {
-    throw InputError(
-        "no model is in service yet: it has learned too few samples, or they were all "
-        "alike");
+    throw InputError("too few rows so far for a model to keep, or rows that are all alike");
   }
   TrainedModel trained = model_.trained();
   trained.alignment = alignment_;

@@ -119,21 +119,71 @@ py::tuple rollout(const TrainedModel& model, const Array& x, const Array& t, boo
   return py::make_tuple(velocity, spread, beyond);
 }
 
+// A model with what its model.json says besides the model.
+struct SavedModel : TrainedModel {
+  format::ModelInfo info{};
+};
+
+SavedModel parse(const std::string& text, const std::string& source) {
+  SavedModel model;
+  static_cast<TrainedModel&>(model) = format::parse_model_json(text, source, &model.info);
+  return model;
+}
+
+SavedModel read(const std::string& file) {
+  SavedModel model;
+  static_cast<TrainedModel&>(model) = format::read_model(file, &model.info);
+  constexpr int kCallersCaller = 2;
+  if (!model.info.doubt.empty() &&
+      PyErr_WarnEx(PyExc_UserWarning,
+                   (file + ": the model is doubtful: " + model.info.doubt).c_str(),
+                   kCallersCaller) < 0) {
+    throw py::error_already_set();
+  }
+  return model;
+}
+
+SavedModel noted(const TrainedModel& model, const format::ColumnUnits& units,
+                 const std::string& doubt) {
+  SavedModel saved;
+  static_cast<TrainedModel&>(saved) = model;
+  saved.info.units = units;
+  saved.info.doubt = doubt;
+  return saved;
+}
+
+void bind_saved_model(py::module_& module) {
+  py::class_<SavedModel, TrainedModel>(
+      module, "SavedModel", "A TrainedModel with the units, doubt and logs of its model.json.")
+      .def_property_readonly("units", [](const SavedModel& model) { return model.info.units; })
+      .def_property_readonly(
+          "doubt", [](const SavedModel& model) { return model.info.doubt; },
+          "What cannot be right in the learned targets; empty without a reason.")
+      .def(
+          "json", [](const SavedModel& model) { return format::model_json(model, model.info); },
+          "The text of a model.json.")
+      .def(
+          "write",
+          [](const SavedModel& model, const std::string& file) {
+            file::write_file_whole(file, format::model_json(model, model.info));
+          },
+          py::arg("file"), "Writes a model.json, whole or not at all; RuntimeError on failure.")
+      .def(py::pickle([](const SavedModel& model) { return format::model_json(model, model.info); },
+                      [](const std::string& text) { return parse(text, "pickle"); }));
+}
+
 }  // namespace
 
 void bind_trained_model(py::module_& module) {
   py::class_<TrainedModel>(module, "TrainedModel",
                            "A model that no longer learns: what model.json holds.")
-      .def_static(
-          "parse",
-          [](const std::string& text, const std::string& source) {
-            return format::parse_model_json(text, source);
-          },
-          py::arg("text"), py::arg("source"),
-          "Reads the text of a model.json; ValueError naming `source` and the key.")
-      .def_static(
-          "read", [](const std::string& file) { return format::read_model(file); }, py::arg("file"),
-          "Reads a model.json; ValueError naming the file and the key.")
+      .def_static("parse", &parse, py::arg("text"), py::arg("source"),
+                  "Reads the text of a model.json; ValueError naming `source` and the key.")
+      .def_static("read", &read, py::arg("file"),
+                  "Reads a model.json; ValueError naming the file and the key, UserWarning with a "
+                  "doubt.")
+      .def("noted", &noted, py::arg("units"), py::arg("doubt"),
+           "The model with what a model.json says of units and doubt.")
       .def(
           "json", [](const TrainedModel& model) { return format::model_json(model); },
           "The text of a model.json.")
@@ -166,6 +216,7 @@ void bind_trained_model(py::module_& module) {
       .def(py::pickle(
           [](const TrainedModel& model) { return format::model_json(model); },
           [](const std::string& text) { return format::parse_model_json(text, "pickle"); }));
+  bind_saved_model(module);
 }
 
 }  // namespace kelpie::python

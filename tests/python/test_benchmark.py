@@ -376,6 +376,9 @@ def test_other_bad_manifests(tmp_path):
     (tmp_path / "bad.toml").write_text("[[data]]\nname = 'a'\nfiles = ['a']\ninputs = ['u']\n")
     with pytest.raises(ManifestError, match="bad.toml:1: targets of 'a': is missing"):
         benchmark.read_manifest(tmp_path / "bad.toml")
+    (tmp_path / "bad.toml").write_text("data = [{name = 'a'}]")
+    with pytest.raises(ManifestError, match=r"bad.toml:1: has to write each .* \[\[data\]\]"):
+        benchmark.read_manifest(tmp_path / "bad.toml")
     (tmp_path / "bad.toml").write_text(2 * MANIFEST)
     with pytest.raises(ManifestError, match="names two data sets"):
         benchmark.read_manifest(tmp_path / "bad.toml")

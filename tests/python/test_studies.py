@@ -2,6 +2,7 @@
 """Held-out blocks, and the commands as functions."""
 
 import json
+import pickle
 import subprocess
 import sys
 
@@ -96,6 +97,7 @@ def test_a_data_frame_gives_the_numbers_of_its_file(table, tmp_path):
     of_frame = kelpie.report(table, settings=QUICK)
     assert learned(of_frame) == learned(of_file)
     assert of_frame["dataset"]["path"] == "the data frame"
+    assert "of the data frame" in of_frame.text and "0.csv" not in of_frame.text + of_frame.page
     stamped = table.drop(columns="t").set_index(
         pandas.Timestamp("2026-03-01", tz="Europe/Berlin") + pandas.to_timedelta(table.t, unit="s"))
     assert kelpie.report(stamped, settings=QUICK)["axes"][0]["r2"] == of_file["axes"][0]["r2"]
@@ -106,6 +108,41 @@ def test_a_data_frame_gives_the_numbers_of_its_file(table, tmp_path):
     assert (tmp_path / "kept" / "model.json").exists() and str(tmp_path / "kept") in again.text
     with pytest.raises(ValueError, match="the data frame: time: is unknown"):
         kelpie.report(table.drop(columns="t"))
+
+
+def test_missing_values_of_pandas_are_empty(table):
+    missing = table.copy()
+    missing.loc[700, "u"] = np.nan
+    nullable = missing.astype("Float64")
+    assert nullable.u.isna()[700]
+    assert learned(kelpie.report(nullable, settings=QUICK)) == learned(
+        kelpie.report(missing, settings=QUICK))
+    stamped = table.assign(t=pandas.Timestamp("2026-03-01") + pandas.to_timedelta(table.t, unit="s"))
+    stamped.loc[700, "t"] = pandas.NaT
+    assert kelpie.report(stamped, settings=QUICK)["axes"][0]["r2"]["final"] > 0.8
+
+
+def test_units_and_doubt_of_a_model_are_kept(table, command, tmp_path):
+    table.to_csv(tmp_path / "log.csv", index=False)
+    sets = [word for name, value in QUICK.items() for word in ("--set", f"{name}={value}")]
+    command("learn", tmp_path / "log.csv", "--units", "n1=rev/s", *sets, "--out", tmp_path / "out")
+    told = json.loads((tmp_path / "out" / "model.json").read_text())
+    told["doubt"] = "udot is in g"
+    (tmp_path / "doubt.json").write_text(json.dumps(told))
+    with pytest.warns(UserWarning, match="doubt.json: the model is doubtful: udot is in g"):
+        model = kelpie.DynamicsModel.load(tmp_path / "doubt.json")
+    assert set(told) >= {"doubt", "units", "learned"}
+
+    def saved(model):
+        model.save(tmp_path / "copy.json")
+        return json.loads((tmp_path / "copy.json").read_text())
+
+    assert saved(model) == told == saved(pickle.loads(pickle.dumps(model)))
+    model.partial_fit(table[INPUTS].iloc[:50], table[TARGETS].iloc[:50], t=table.t.iloc[:50])
+    again = saved(pickle.loads(pickle.dumps(model)))
+    assert (again["doubt"], again["units"]) == (told["doubt"], told["units"])
+    assert "learned" not in again
+    assert "doubt" not in saved(model.fit(table[INPUTS], table[TARGETS], t=table.t))
 
 
 def test_comparisons_and_searches(table, compared):

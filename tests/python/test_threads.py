@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Arrays aren't copied, other threads run meanwhile, Ctrl-C is heard."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -60,6 +61,32 @@ def test_other_threads_run_while_one_learns(log):
     assert not failures
     assert turns > 10
     assert model.n_samples_seen_ == 600 + 2 * len(X)
+
+
+def test_ctrl_c_ends_a_report(tmp_path):
+    script = f"""
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.path.insert(0, {str(__file__.rsplit("/", 1)[0])!r})
+import numpy as np
+import kelpie
+from conftest import INPUTS, TARGETS, drive
+log = drive(600)
+rows = np.tile(np.column_stack([log.X, log.y]), (200, 1))
+table = dict(zip([*INPUTS, *TARGETS], rows.T))
+try:
+    print("go", flush=True)
+    kelpie.report(table, rate=10.0, align="none", accept="implausible")
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+"""
+    with subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE,
+                          text=True, env={**os.environ, "TMPDIR": str(tmp_path)}) as process:
+        assert process.stdout.readline() == "go\n"
+        timer = threading.Timer(5.0, process.send_signal, [signal.SIGINT])
+        timer.start()
+        out, _ = process.communicate(timeout=120)
+    assert out == "stopped\n"
 
 
 def test_ctrl_c_ends_a_long_fit():

@@ -45,6 +45,7 @@ struct Decision {
   Verdict verdict = Verdict::accepted;
   Prediction prediction{};  ///< by the model in service before the sample was learned
   bool had_model = false;   ///< a model was in service; without one the prediction is a mean
+  bool early = false;       ///< an early model (docs/method/committee.md)
   double similarity = 0.0;  ///< largest κ_SE to a sample in the buffer, before learning
   int outliers = 0;         ///< samples rejected as outliers in this step
   int forgotten = 0;     ///< samples removed from a full buffer, or lost with a change of the model

@@ -18,6 +18,7 @@ struct Status {
   int support_vectors = 0;  ///< samples with a weight
   double kkt_gap = 0.0;     ///< of the model in service
   bool ready = false;       ///< a trained model is in service
+  bool early = false;       ///< an early model (docs/method/committee.md)
   Tally tally{};
 
   void visit(Archive& archive);  ///< core/archive.hpp

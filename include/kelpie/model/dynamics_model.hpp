@@ -101,14 +101,15 @@ class DynamicsModel final : public OnlineModel {
   /// than the setting `memory`, samples in each model, and finite numbers.
   void set_past_models(std::size_t axis, std::vector<StoredPastModel> models);
 
-  /// The whole state as bytes: everything learned, and every input of the next update.
+  /// The whole state as bytes: everything learned, and every input of the next update, but past
+  /// models that were given.
   std::string save() const;
 
   /// The saved model; continues to the last bit as if never stopped. Requires a `fresh` model that
-  /// has learned nothing, made with the arguments of the saved model; move it in. A machine with
-  /// other vector instructions continues too, but rounds differently. Throws InputError with the
-  /// inputs, targets or setting that differ, with both values, or the part of the state that
-  /// doesn't fit.
+  /// has learned nothing, made with the arguments of the saved model and given the same past
+  /// models (set_past_models()); move it in. A machine with other vector instructions continues
+  /// too, but rounds differently. Throws InputError with the inputs, targets or setting that
+  /// differ, with both values, or the part of the state that doesn't fit.
   static DynamicsModel resume(DynamicsModel fresh, std::string_view saved);
 
   /// A model that continues to learn from a trained model, from the time `start_s` [s] on, with the
@@ -118,9 +119,11 @@ class DynamicsModel final : public OnlineModel {
   /// save() keeps them. Throws InputError on settings with other terms than the model's.
   static DynamicsModel resume_from(const TrainedModel& trained, double start_s = 0.0);
 
-  bool ready() const;  ///< Whether every axis has a model in service.
+  /// Whether every axis has a model with a scale of its own. An early model is in service from the
+  /// tenth sample on (Decision::early), but is neither kept nor shared.
+  bool ready() const;
 
-  TrainedModel trained() const;  ///< A copy of the models in service. Requires ready().
+  TrainedModel trained() const;  ///< A copy of the models. Requires ready().
 
   /// Memory of the learners and intervals of all axes in bytes, known before construction. Scales,
   /// held-back samples, steady parts and the diagnosis (a quarter of a megabyte for three axes and

@@ -96,7 +96,8 @@ class Diagnosis {
                            const Attitude& attitude = {});
 
   /// Processes one sample. Requires as many inputs and targets as at construction. A sample that is
-  /// not finite is ignored; a clock set back to before the block of rows begins a new one.
+  /// not finite, or has a value above 1e50, is ignored; a clock set back to before the block of
+  /// rows begins a new one.
   void update(std::span<const double> x, std::span<const double> y, double t);
 
   /// The last kMostFindings changes, the oldest first.

@@ -104,6 +104,8 @@ def read_manifest(path: Path) -> list[Source]:
         raise ManifestError(f"{path}:1: has no table [[data]]; one for each data set is wanted")
     lines = [i for i, line in enumerate(text.splitlines(), 1)
              if re.match(r"\s*\[\[\s*data\s*\]\]", line)]
+    if len(lines) != len(tables):
+        raise ManifestError(f"{path}:1: has to write each data set as a table [[data]]")
     sources = [_source(path, line, table) for line, table in zip(lines, tables)]
     names = [source.name for source in sources]
     for i, source in enumerate(sources):

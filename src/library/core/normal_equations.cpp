@@ -2,6 +2,7 @@
 #include "core/normal_equations.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <limits>
 
 namespace kelpie {
@@ -64,6 +65,13 @@ void NormalEquations::subtract(const NormalEquations& other) {
   as_vector(a_) -= as_vector(other.a_);
   as_vector(b_) -= as_vector(other.b_);
   as_vector(c_) -= as_vector(other.c_);
+}
+
+void NormalEquations::clear() {
+  rows_ = 0.0;
+  for (std::vector<double>* const sums : {&a_, &b_, &c_}) {
+    std::ranges::fill(*sums, 0.0);
+  }
 }
 
 void NormalEquations::scale(double factor) {

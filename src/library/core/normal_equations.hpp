@@ -17,8 +17,7 @@ namespace kelpie {
 /// a function says otherwise.
 ///
 /// For batches of rows: diagnosis, identification, the alignment of commands. The on-line learners
-/// update a triangular factor (TriangularFit) or an inverse (RecursiveLeastSquares, Disturbance)
-/// with every row instead, which is another algorithm.
+/// update a triangular factor (TriangularFit) with every row instead, which is another algorithm.
 class NormalEquations {
  public:
   NormalEquations() = default;  ///< No terms and no targets.
@@ -35,7 +34,7 @@ class NormalEquations {
   void add(const NormalEquations& other);       ///< Requires the same sizes.
   void subtract(const NormalEquations& other);  ///< Removes rows that were added.
   void scale(double factor);                    ///< Multiplies the weight of all rows (forgetting).
-  void clear() { scale(0.0); }
+  void clear();                                 ///< Removes all rows.
 
   /// The sums for targets y + Δᵀφ, with Δ (terms × targets) column by column.
   void shift(std::span<const double> delta);

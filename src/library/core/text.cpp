@@ -12,6 +12,8 @@
 namespace kelpie {
 namespace {
 
+constexpr const char* kBlanks = " \t\r";  // \r: of line ends from Windows
+
 char lower(char letter) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
 }
@@ -19,11 +21,11 @@ char lower(char letter) {
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
+  const auto first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) {
     return {};
   }
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
 std::vector<std::string> split_text(std::string_view text, char separator) {
@@ -98,6 +100,10 @@ std::size_t require_name(std::string_view field, std::string_view name, std::str
     throw InputError(field, unknown_name(name, kind, known));
   }
   return static_cast<std::size_t>(found - known.begin());
+}
+
+std::string without_brackets(const std::string& host) {
+  return host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
 }
 
 bool parse_number(std::string_view text, double& value) {

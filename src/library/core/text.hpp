@@ -33,6 +33,9 @@ std::string unknown_name(std::string_view name, std::string_view kind,
 std::size_t require_name(std::string_view field, std::string_view name, std::string_view kind,
                          std::span<const std::string> known);
 
+/// A host without the brackets of an IPv6 address, as in "[::1]".
+std::string without_brackets(const std::string& host);
+
 /// The whole of `text` as a number. Returns false on other text ("1.5x", "", "1 2");
 /// accepts "nan", "inf" and a leading '+', whatever the locale.
 bool parse_number(std::string_view text, double& value);

@@ -98,7 +98,7 @@ class Committee final : public OnlineRegressor {
 
   /// Begins with weights of the terms known beforehand; the last number is of the bias. `line`
   /// takes these as a prior, and a larger share until errors are known; terms have no range.
-  /// Requires a committee without samples. Allocates nothing.
+  /// Requires a committee without samples. Allocates.
   void expect(std::span<const double> weights);
 
   /// Follows a change of the vehicle by a known step of the terms' weights; the last number is of

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "learner/sample_map.hpp"
 #include "learner/tuning.hpp"
 
 namespace kelpie {
@@ -198,6 +199,7 @@ void PastModels::unite(std::size_t kept, std::size_t same) {
   info.number = std::min(info.number, own.number);
   info.from_s = std::min(info.from_s, own.from_s);
   info.samples += own.samples;
+  info.earlier += own.earlier;
   info.recalls += own.recalls;
   std::swap(models_[kept], models_[--size_]);
   kept_as_ = same == size_ ? kept : same;
@@ -210,6 +212,9 @@ std::size_t PastModels::place_for_another() {
       models(), {}, [](const PastModel& model) { return model.info.usefulness(); });
   const std::size_t place =
       size_ < capacity_ ? size_++ : static_cast<std::size_t>(least - models().begin());
+  if (before_ == place) {
+    before_.reset();  // a withdrawal keeps the vehicle anew
+  }
   models_[place].info = {};
   return place;
 }
@@ -222,7 +227,7 @@ void PastModels::add(const PastModel& model) {
 
 void PastModels::rescale(const SampleMap& map) {
   outdated_ = true;
-  mean_error_ = stretched(map, mean_error_);
+  mean_error_ *= linear_part(map, sample_).gain;
   alarm_.reset();
   if (state_ == State::on_trial) {
     enter(State::on_trial);  // what was tried was so in the scale before
@@ -239,7 +244,7 @@ void PastModels::rescale_model(std::size_t model, const SampleMap& map,
     map(sample_, past.targets[i]);
     past.samples.set(i, sample_);
   }
-  past.info.usual_error = stretched(map, past.info.usual_error);
+  past.info.usual_error *= linear_part(map, sample_).gain;
   past.function.assign(function);
 }
 
@@ -248,16 +253,6 @@ void PastModels::finish_rescale() {
   if (state_ == State::on_trial) {
     start_trial(grown_s_);
   }
-}
-
-// A difference of targets in the other scale.
-double PastModels::stretched(const SampleMap& map, double difference) {
-  double zero = 0.0;
-  std::ranges::fill(sample_, 0.0);
-  map(sample_, zero);
-  std::ranges::fill(sample_, 0.0);
-  map(sample_, difference);
-  return difference - zero;
 }
 
 void PastModels::visit(Archive& archive) {

@@ -118,7 +118,6 @@ class PastModels {
   std::optional<std::size_t> agreeing(const SvrFunction& function);
   std::size_t place_for_another();
   void unite(std::size_t kept, std::size_t same);
-  double stretched(const SampleMap& map, double difference);
 
   std::size_t capacity_;
   std::size_t size_ = 0;

@@ -109,11 +109,15 @@ void SeenTermRanges::visit(Archive& archive) {
   std::size_t terms = seen_.size();
   archive.whole(terms);
   archive.require(terms == 0 || terms == seen_.size(), "limits of other terms");
-  resize(terms);
+  if (archive.loading()) {
+    resize(terms);
+  }
   for (SeenRange& seen : seen_) {
     archive.part("seen term", seen);
   }
-  measure();
+  if (archive.loading()) {
+    measure();
+  }
 }
 
 }  // namespace kelpie

@@ -55,7 +55,6 @@ class SparseRegression {
   /// The learned function, as of the last publish().
   const SvrFunction& model() const { return model_; }
 
-  std::int64_t samples() const { return samples_; }  ///< learned so far
   std::size_t centres() const { return centres_.size(); }
 
   /// Work of learn() and publish() [visited numbers].

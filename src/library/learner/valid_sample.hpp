@@ -6,10 +6,9 @@
 #include <cstddef>
 #include <span>
 
-namespace kelpie {
+#include "core/most_value.hpp"
 
-/// The largest value of a valid sample: sums of products stay finite.
-inline constexpr double kMostValue = 1e50;
+namespace kelpie {
 
 /// Whether a sample is valid for a learner of `inputs` inputs; else Verdict::invalid.
 inline bool valid_sample(std::span<const double> x, std::size_t inputs, double y, double t) {

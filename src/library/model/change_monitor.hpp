@@ -44,7 +44,7 @@ namespace kelpie {
 /// follow. Another minute later the vehicle with the change is the vehicle without a change.
 /// Before, a loss of evidence withdraws the change: a disturbance has passed.
 ///
-/// Rows less than 0.2 s after the row before are skipped. Cost of a row: O(m² a) for m terms and a
+/// Rows less than 0.24 s after the row before are skipped. Cost of a row: O(m² a) for m terms and a
 /// axes, and O(a (m + q²)) per start for q causes; at most kMostStarts starts live at a time.
 /// Allocates in the constructor only.
 class ChangeMonitor {

@@ -27,7 +27,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "26";  // of the archive of all classes together
+constexpr const char* kStateVersion = "27";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -115,6 +115,10 @@ void require_complete(std::span<const std::string> inputs, std::span<const std::
 
 bool is_refused(const Decision& decision) {
   return decision.verdict == Verdict::invalid || decision.verdict == Verdict::implausible;
+}
+
+bool is_settled(const Decision& decision) {
+  return decision.had_model && !decision.early;
 }
 
 bool is_news(const Decision& decision) {
@@ -222,7 +226,7 @@ void DynamicsModel::Parts::monitor_change(std::span<const double> x, std::span<c
   }
   if (std::ranges::any_of(state.decisions, is_news)) {
     change->restart();
-  } else if (trusts_sample() && std::ranges::all_of(state.decisions, &Decision::had_model)) {
+  } else if (trusts_sample() && std::ranges::all_of(state.decisions, is_settled)) {
     apply_change(change->update(x, y, t));
   }
 }
@@ -293,7 +297,7 @@ void DynamicsModel::Parts::observe_steady(std::span<const double> x, std::span<c
     std::ranges::transform(axes, a.begin(),
                            [at](const GuardedAxis& axis) { return axis.predict(at); });
   };
-  const bool ready = std::ranges::all_of(state.decisions, &Decision::had_model);
+  const bool ready = std::ranges::all_of(state.decisions, is_settled);
   steady->observe(x, y, t, ready ? learned : Accelerations{});
 }
 
@@ -457,7 +461,10 @@ void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastMode
 }
 
 bool DynamicsModel::ready() const {
-  return std::ranges::all_of(parts_->axes, [](const auto& axis) { return axis.status().ready; });
+  return std::ranges::all_of(parts_->axes, [](const GuardedAxis& axis) {
+    const Status status = axis.status();
+    return status.ready && !status.early;
+  });
 }
 
 std::string DynamicsModel::save() const {

@@ -20,7 +20,7 @@ class ExpectedSixAxisFit : public ExpectedFit {
   explicit ExpectedSixAxisFit(const SixAxisRows& rows, const SixAxisSettings& options = {});
 
   const SixAxisFit& now() const override { return now_; }
-  /// Cost: windows × (63 + 2 thrusters)² × lags. Allocates.
+  /// Cost: windows × (60 + 2 thrusters)² × lags. Allocates.
   ParameterFit after(const WeakRows& drives) const override;
   /// The windows of rows to come. Requires the same thrusters.
   WeakRows windows(const SixAxisRows& drives) const;

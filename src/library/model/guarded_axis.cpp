@@ -89,7 +89,9 @@ GuardedAxis::GuardedAxis(std::size_t inputs, const SharedSettings& shared,
                          const OnlineSvrSettings& settings, const TermSet& terms,
                          std::optional<AxisScaling> scaling)
     : arguments_{inputs, shared, settings, terms, std::move(scaling)},
-      axes_{arguments_.make(), arguments_.make()},
+      axes_{arguments_.make(), arguments_.make_early()},
+      early_(shared.track > 0.0 && !arguments_.scaling),
+      candidate_serves_(early_),
       expected_target_(terms),
       guarded_(shared.track > 0.0),
       first_(inputs),
@@ -98,6 +100,12 @@ GuardedAxis::GuardedAxis(std::size_t inputs, const SharedSettings& shared,
       refused_(inputs),
       before_(-kNever),
       feed_(inputs, 2 * ThinnedRows::kMost) {}
+
+DynamicsAxis GuardedAxis::Arguments::make_early() const {
+  SharedSettings early = shared;
+  early.warmup = std::min(early.warmup, kGuard.early_samples);
+  return {inputs, early, settings, terms, scaling};
+}
 
 void GuardedAxis::limit(const Budget& budget) {
   std::ranges::for_each(axes_, [&](DynamicsAxis& axis) { axis.limit(budget); });
@@ -117,9 +125,18 @@ void GuardedAxis::apply_change(std::span<const CommandGain> gains, std::span<con
   }
 }
 
+void GuardedAxis::expect_vehicle(std::vector<double> coefficients) {
+  expected_ = std::move(coefficients);
+  trusted().expect_vehicle(expected_);
+  if (early_) {
+    candidate().expect_vehicle(expected_);
+  }
+}
+
 void GuardedAxis::resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) {
   trusted().resume_from(scaling, said, t);
   candidate() = trusted();
+  early_ = candidate_serves_ = false;
   young_until_ = -kNever;
 }
 
@@ -128,6 +145,7 @@ void GuardedAxis::learn_held_back() {
     feed();
   }
   trusted().learn_held_back();
+  end_early();
 }
 
 // The way of a sample through the guard (docs/reference/architecture.md).
@@ -143,13 +161,17 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   count_time(refused, t);
   const bool another_serves = refused != candidate_serves_;  // than the axis that learns
   const Prediction said = refused || another_serves ? assess(x) : Prediction{};
+  const bool had_model = another_serves && in_service().status().ready;
+  const bool early = early_;
   Decision decision = refused ? learn_doubted(x, y, t, said) : learn_trusted(x, y, t);
   if (another_serves) {
     decision.prediction = said;
+    decision.had_model = had_model;
   }
+  decision.early = early && decision.had_model;
   feed();
   look(t);
-  candidate_serves_ = probation_ && trusted().scaling() != nullptr && trusted().far(x);
+  candidate_serves_ = early_ || (probation_ && trusted().scaling() != nullptr && trusted().far(x));
   return decision;
 }
 
@@ -199,12 +221,20 @@ Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double 
             .prediction = {.value = trusted().predict(x)},
             .had_model = trusted().status().ready};
   }
-  const bool had_scale = trusted().scaling() != nullptr;
   const Decision decision = trusted().update(x, y, t);
-  if (!had_scale && trusted().scaling() != nullptr && !probation_) {
-    candidate() = trusted();  // allocates now what a candidate needs
+  end_early();
+  if (early_) {
+    candidate().update(x, y, t);
   }
   return decision;
+}
+
+// Once the trusted axis has learned the samples that were held back.
+void GuardedAxis::end_early() {
+  if (early_ && !trusted().holds_back()) {
+    early_ = candidate_serves_ = false;
+    candidate() = trusted();  // allocates now what a candidate needs
+  }
 }
 
 Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t,
@@ -260,6 +290,7 @@ void GuardedAxis::doubt(double t) {
 }
 
 void GuardedAxis::begin_probation(double t) {
+  early_ = false;
   probation_ = true;
   evidence_ = {};
   convincing_from_ = t + kGuard.convinced_s;
@@ -419,6 +450,7 @@ bool GuardedAxis::too_large(const DynamicsAxis& axis, const ThinnedRows& rows) {
 
 Status GuardedAxis::status() const {
   Status status = in_service().status();
+  status.early = early_ && status.ready;
   status.tally = trusted().status().tally;
   status.tally.add(gone_);
   if (probation_) {
@@ -459,17 +491,18 @@ void GuardedAxis::visit(Archive& archive) {
   archive.list(expected_, arguments_.terms.size() + 1, [&](double& one) { archive.number(one); });
   archive.whole(trusted_, 0, 1);
   archive.part("trusted", trusted());
+  archive.flag(early_);
   archive.flag(probation_);
   archive.flag(former_kept_);
-  if (probation_ || former_kept_) {
+  const bool another = early_ || probation_ || former_kept_;
+  if (another) {
     archive.part("candidate", candidate());
-    archive.require(candidate().scaling() != nullptr, "is a candidate without a scale");
-  }
-  if (archive.loading() && !probation_ && !former_kept_) {
+    archive.require(early_ || candidate().scaling() != nullptr, "is a candidate without a scale");
+  } else if (archive.loading()) {
     candidate() = trusted();
   }
   archive.flag(candidate_serves_);
-  archive.require(probation_ || !candidate_serves_, "serves without a candidate");
+  archive.require(early_ || probation_ || !candidate_serves_, "serves without a candidate");
   archive.part("expected target", expected_target_);
   archive.flag(guarded_);
   archive.part("first", first_);

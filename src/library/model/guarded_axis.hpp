@@ -38,8 +38,12 @@ namespace kelpie {
 /// else a new axis; the axis learns this half. A candidate with too large a scale begins again in
 /// the same way.
 ///
-/// One axis learns a sample, so that the guard adds no work to an update, except to the few updates
-/// in which a candidate begins. Without `track`, every sample is plausible.
+/// Before all this, while the trusted axis holds its first samples back for a scale, a candidate
+/// with a scale of ten samples learns these samples and is in service.
+///
+/// One axis learns a sample, so that the guard adds no work to an update, except to the first
+/// updates, and to the few in which a candidate begins. Without `track`, every sample is plausible,
+/// and no candidate is in service.
 class GuardedAxis final : public OnlineRegressor {
  public:
   /// As DynamicsAxis.
@@ -77,10 +81,7 @@ class GuardedAxis final : public OnlineRegressor {
                     const Decision& news);
 
   /// DynamicsAxis::expect_vehicle(). A further axis that begins anew begins with these, too.
-  void expect_vehicle(std::vector<double> coefficients) {
-    expected_ = std::move(coefficients);
-    trusted().expect_vehicle(expected_);
-  }
+  void expect_vehicle(std::vector<double> coefficients);
 
   /// DynamicsAxis::set_past_models().
   void set_past_models(std::vector<StoredPastModel> models) {
@@ -112,6 +113,7 @@ class GuardedAxis final : public OnlineRegressor {
     TermSet terms;
     std::optional<AxisScaling> scaling;
     DynamicsAxis make() const { return {inputs, shared, settings, terms, scaling}; }
+    DynamicsAxis make_early() const;  ///< With a scale of few samples.
   };
 
   /// How well a candidate explains the samples that only the candidate learns.
@@ -130,6 +132,7 @@ class GuardedAxis final : public OnlineRegressor {
   const DynamicsAxis& candidate() const { return axes_[1 - trusted_]; }
   DynamicsAxis& candidate() { return axes_[1 - trusted_]; }
   Decision learn_trusted(std::span<const double> x, double y, double t);
+  void end_early();
   Decision learn_doubted(std::span<const double> x, double y, double t, const Prediction& said);
   Decision learn_in_candidate(std::span<const double> x, double y, double t);
   bool plausible(std::span<const double> x, double y, double t) const;
@@ -156,8 +159,10 @@ class GuardedAxis final : public OnlineRegressor {
   std::size_t trusted_ = 0;             ///< number of the trusted axis
   bool former_kept_ = false;            ///< the other axis was trusted until a candidate took over
   bool probation_ = false;              ///< the other axis is a candidate
-  bool candidate_serves_ = false;       ///< the inputs of the last sample were far away
-  ExpectedTarget expected_target_;      ///< whatever axis is trusted
+  bool early_;             ///< the candidate learns as well, until the trusted axis has learned the
+                           ///< samples held back
+  bool candidate_serves_;  ///< early, or the inputs of the last sample were far away
+  ExpectedTarget expected_target_;  ///< whatever axis is trusted
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small
   bool trusted_last_ = true;
 

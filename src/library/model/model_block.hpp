@@ -28,8 +28,9 @@ namespace kelpie {
 ///
 ///     per input    least and greatest known value; the numbers of the actuator (Actuator::fields)
 ///     once         shift of the commands [s]; members, support vectors, places
-///     per target   first and last member, limits, mean of the inputs, whitening (row-major), least
-///                  and greatest value of every term, ±infinity without a limit
+///     per target   first and last member; lower and upper limit, caution, square of the target's
+///                  scale; mean of the inputs, whitening (row-major), least and greatest value of
+///                  every term, ±infinity without a limit
 ///     per member   share, first and last support vector, γ, s, fine, offset, coefficients
 ///     vectors      all support vectors, scaled; all weights, in target units; in groups of
 ///                  kLanes of one member, of which first comes the first input of all, and so on;

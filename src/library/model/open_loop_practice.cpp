@@ -193,7 +193,7 @@ ByAge OpenLoopPractice::off(std::size_t state) const {
         mixed(values_of(errors(state, age).held), mixture_errors(state, age, s), shares[age]);
     std::ranges::transform(left, left.begin(), [](double value) { return std::abs(value); });
     off[age] = left.empty() ? std::numeric_limits<double>::quiet_NaN()
-                            : conformal_bound(left, kPractice.coverage) / kPractice.deviations;
+                            : conformal_bound(left, kPractice.coverage) / kNormal90;
   }
   return off;
 }

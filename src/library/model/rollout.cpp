@@ -46,7 +46,6 @@ double kept_at(const ByAge& kept, double age_s) {
 }
 
 double off_at(const ByAge& off, double noise, double age_s) {
-  constexpr double kDiffusion = 0.5;
   if (age_s < kPractisedAges.front()) {
     return noise + age_s / kPractisedAges.front() * (std::max(off.front(), noise) - noise);
   }
@@ -57,7 +56,8 @@ double off_at(const ByAge& off, double noise, double age_s) {
                        : 0.0;
   };
   const auto [before, after, share] = between(age_s);
-  const double slope = before < after ? growth(after) : std::clamp(growth(after), 0.0, kDiffusion);
+  const double slope =
+      before < after ? growth(after) : std::clamp(growth(after), 0.0, kRollout.diffusion);
   return off[before] * std::pow(age_s / kPractisedAges[before], slope);
 }
 

@@ -49,6 +49,9 @@ class Scaled : public OnlineRegressor {
   /// scale alone. Requires scaling(). Allocates nothing.
   void expect(const ThinnedRows& samples);
 
+  /// Whether first samples are held back that the learner has still to learn.
+  bool holds_back() const { return scaling() == nullptr || warm_up_.size() > 0; }
+
   bool changes_scale() const { return scale_.on_the_way(); }  ///< A change of scale is under way.
 
  protected:

@@ -32,11 +32,6 @@ constexpr std::array<const char*, SixAxisPlace::thrusters> kVehicleNames{
     "net_weight",           "roll_moment",         "pitch_moment",         "righting_moment"};
 constexpr std::array<const char*, SixAxisPlace::curve_size> kCurveNames{"lag", "delay", "dead_band",
                                                                         "volts_exponent"};
-constexpr double kUnseen = 10.0;  // error of what was never seen, over the value
-constexpr double kStudent = kIdentification.student90 / kNormal90;
-// The largest steps and values of the parameters of the curve.
-constexpr std::array kMostStep{0.1, 0.1, 0.05, 0.5};
-constexpr std::array kMostValue{5.0, 2.0, 0.5, 3.0};
 
 std::vector<std::string> names_of(const std::vector<PlacedThruster>& thrusters) {
   std::vector<std::string> names(kVehicleNames.begin(), kVehicleNames.end());
@@ -48,6 +43,17 @@ std::vector<std::string> names_of(const std::vector<PlacedThruster>& thrusters) 
     names.push_back(std::string("thrusters.") + name);
   }
   return names;
+}
+
+// Gaps between stretches are no steps. 1 s without a step.
+double usual_step_s(const SixAxisRows& rows) {
+  std::vector<double> steps_s;
+  for (std::size_t row = 1; row < rows.rows(); ++row) {
+    if (!std::ranges::binary_search(rows.starts, row)) {
+      steps_s.push_back(rows.times_s[row] - rows.times_s[row - 1]);
+    }
+  }
+  return steps_s.empty() ? 1.0 : std::max(quantile(steps_s, 0.5), 1e-6);
 }
 
 // One fit at one length of window.
@@ -204,11 +210,12 @@ class Search {
     const Eigen::Index first = place_of(SixAxisPlace::curve(rows_.thrusters.size()));
     for (std::size_t k = 0; k < kThrustCurve.size(); ++k) {
       if (windows_.sought[k]) {
+        const double most_step = kIdentification.most_curve_steps[k];
         const double step =
-            std::clamp(best_.parameters(first + place_of(k)), -kMostStep[k], kMostStep[k]);
+            std::clamp(best_.parameters(first + place_of(k)), -most_step, most_step);
         double& value = windows_.curve.*kThrustCurve[k];
-        value = std::clamp(value + step, 0.0, kMostValue[k]);
-        moved = moved || std::abs(step) > kIdentification.least_curve_step * kMostStep[k];
+        value = std::clamp(value + step, 0.0, kIdentification.most_of_curve[k]);
+        moved = moved || std::abs(step) > kIdentification.least_curve_step * most_step;
       }
     }
     return moved;
@@ -241,14 +248,6 @@ class Search {
     return other.iterate(true) ? other.best_.parameters : best_.parameters;
   }
 
-  double usual_step_s() const {
-    std::vector<double> steps;
-    for (std::size_t row = 1; row < rows_.rows(); ++row) {
-      steps.push_back(rows_.times_s[row] - rows_.times_s[row - 1]);
-    }
-    return quantile(steps, 0.5);
-  }
-
   // Further standard errors, of what no log tells.
   double allowance(std::size_t place) const {
     if (place == SixAxisPlace::moment || place == SixAxisPlace::moment + 1) {
@@ -256,7 +255,7 @@ class Search {
              std::abs(best_.parameters(place_of(SixAxisPlace::moment + 2)));
     }
     const std::size_t curve = SixAxisPlace::curve(rows_.thrusters.size());
-    return place == curve || place == curve + 1 ? usual_step_s() / std::sqrt(12.0) : 0.0;
+    return place == curve || place == curve + 1 ? usual_step_s(rows_) / std::sqrt(12.0) : 0.0;
   }
 
   const SixAxisRows& rows_;
@@ -379,17 +378,6 @@ void set_errors(const Eigen::MatrixXd& covariance, ParameterFit& fit) {
   }
 }
 
-// Of the usual step: gaps between stretches are no steps. 1 Hz without a step.
-double rate_hz(const SixAxisRows& rows) {
-  std::vector<double> steps_s;
-  for (std::size_t row = 1; row < rows.rows(); ++row) {
-    if (!std::ranges::binary_search(rows.starts, row)) {
-      steps_s.push_back(rows.times_s[row] - rows.times_s[row - 1]);
-    }
-  }
-  return steps_s.empty() ? 1.0 : 1.0 / std::max(quantile(steps_s, 0.5), 1e-6);
-}
-
 }  // namespace
 
 std::vector<double> thruster_speeds(const SixAxisRows& rows, const ThrustCurve& curve) {
@@ -397,7 +385,7 @@ std::vector<double> thruster_speeds(const SixAxisRows& rows, const ThrustCurve& 
   const Actuator actuator{
       .dead_band = curve.dead_band, .lag_s = curve.lag_s, .delay_s = curve.delay_s};
   std::vector<double> speeds(rows.rows() * count);
-  const double rate = rate_hz(rows);
+  const double rate = 1.0 / usual_step_s(rows);
   for (std::size_t i = 0; i < count; ++i) {
     ActuatorState state(actuator, rate);
     std::size_t stretch = 0;
@@ -538,7 +526,7 @@ Eigen::MatrixXd ExpectedSixAxisFit::covariance_of(const Information& told) const
   }
   Eigen::MatrixXd covariance = floor_;
   for (Eigen::Index place = 1; place < parameters_.size(); ++place) {
-    covariance(place, place) += std::pow(kUnseen * parameters_(place), 2.0);
+    covariance(place, place) += std::pow(kIdentification.unseen * parameters_(place), 2.0);
   }
   const Eigen::MatrixXd inverse = equilibrated_inverse(told.hessian(sought, sought));
   covariance(sought, sought) = floor_(sought, sought) + kStudent * kStudent * misfit_ * inverse *

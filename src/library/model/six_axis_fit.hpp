@@ -105,7 +105,7 @@ struct SixAxisSettings {
 ///    the fit, 1 mrad of attitude in the moments, and half a row in lag and delay.
 /// A parameter whose error blurs more than 30 % of the forces on its axis is not told. Throws
 /// InputError on too few rows, and naming inertias that are not told. Cost: per window length some
-/// eight times windows × (39 + 2 thrusters + 24)², for errors twelve times more. Allocates.
+/// eight times windows × (36 + 2 thrusters + 24)², for errors twelve times more. Allocates.
 /// Deterministic.
 SixAxisFit fit_six_axes(const SixAxisRows& rows, const SixAxisSettings& options = {});
 

@@ -10,8 +10,7 @@
 namespace kelpie {
 
 /// Samples spread evenly over a stretch of a stream of any length: every sample until kMost samples
-/// are kept, then every second, fourth, eighth … Allocates in
-/// the constructor only.
+/// are kept, then every second, fourth, eighth … Allocates in the constructor only.
 class ThinnedRows {
  public:
   static constexpr std::size_t kMost = 512;  ///< samples

@@ -50,9 +50,10 @@ inline constexpr struct ModelTuning {
     double still = 1e-4;              ///< weight of still water, the same; by hand
     double difference_m_s = 1e-3;     ///< m/s, of slopes; by hand
     double turn_s = 2.0;              ///< s of a turn, compared with the yaw rate; by hand
-    double least_turn_rad = 0.5;      ///< rad, root mean square · √turns, told by; by hand
-    double unit_tolerance = 0.15;     ///< of the unit of a heading; by hand
-    double most_rate = 6.3;           ///< rad/s: a faster yaw rate is in degrees
+    double least_turn_rad = 0.5;  ///< rad, least root mean square of a turn times √turns that tells
+                                  ///< the unit of a heading; by hand
+    double unit_tolerance = 0.15;  ///< of the unit of a heading; by hand
+    double most_rate = 6.3;        ///< rad/s: a faster yaw rate is in degrees
   } water;
 
   /// Intervals of lags (lag_intervals in model/alignment.hpp).
@@ -81,6 +82,7 @@ inline constexpr struct ModelTuning {
   /// lasts up to 30 s, and from a vehicle that sets off, which is believed within 10 s; the other
   /// values: by hand.
   struct Guard {
+    int early_samples = 10;             ///< of a scale until `warmup` samples give one; by hand
     double believed_s = 0.5;            ///< s of implausible samples before a candidate learns them
     std::int64_t least_refused = 4;     ///< samples, the same where rows are rare
     double share_s = 30.0;              ///< s, memory of the share of time with implausible samples
@@ -139,7 +141,8 @@ inline constexpr struct ModelTuning {
 
   /// ChangeMonitor; docs/method/committee.md, Change: a prototype on training rows of 24 streams.
   struct Change {
-    double step_s = 0.2;             ///< s between two rows that count; by hand
+    double step_s = 0.24;            ///< s between two rows that count: from 0.2, 0.24
+    double almost = 0.999;           ///< of a step, which is over: as of Steady
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
     double prior = 1.0;              ///< of a term without effect [samples]; by hand
     std::size_t least_errors = 64;   ///< before the usual error is known; by hand
@@ -177,18 +180,19 @@ inline constexpr struct ModelTuning {
   /// Practice of rollouts (model/open_loop_practice.hpp).
   struct Practice {
     std::size_t stretches = 24;  ///< that count; docs/method/open_loop.md: from 12, 16, 24, 32
-    double assumed = 0.5;   ///< stretches that say nothing against half and half, and the change
-    std::size_t few = 3;    ///< stretches before a change of the vehicle that count; by hand
-    double coverage = 0.9;  ///< of the errors, within the bands
-    double deviations = 1.6449;  ///< of a normal distribution, with this coverage
-    double least_off = 0.1;      ///< of the errors scored: not noise of the measurement; by hand
+    double assumed = 0.5;    ///< stretches that say nothing against half and half, and the change
+    std::size_t few = 3;     ///< stretches before a change of the vehicle that count; by hand
+    double coverage = 0.9;   ///< of the errors, within the bands
+    double least_off = 0.1;  ///< of the errors scored: not noise of the measurement; by hand
   } practice;
 
   /// Rollouts (model/rollout.hpp).
   struct Rollout {
-    double beyond = 0.05;  ///< of the range seen, outside which an input is new; by hand
-    double leeway = 0.5;   ///< of the range seen, bound of velocities; by hand
-    double probe = 1e-4;   ///< of the range seen, step of numerical slopes; by hand
+    double diffusion = 0.5;  ///< most growth of errors beyond practised ages, as a power of the
+                             ///< age: a random walk's
+    double beyond = 0.05;    ///< of the range seen, outside which an input is new; by hand
+    double leeway = 0.5;     ///< of the range seen, bound of velocities; by hand
+    double probe = 1e-4;     ///< of the range seen, step of numerical slopes; by hand
   } rollout;
 
   /// The limit of the work of an update (model/work_limit.hpp, docs/measured/performance.md).

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/eigen.hpp"
+#include "core/most_value.hpp"
 #include "core/normal_equations.hpp"
 #include "core/quantile.hpp"
 #include "core/roomy_vector.hpp"
@@ -31,25 +32,12 @@ void visit_finding(Archive& archive, Finding& finding) {
   for (Cause& cause : finding.causes) {
     visit_cause(archive, cause);
   }
+  for (double& share : finding.before) {
+    archive.number(share);
+  }
   visit_cause(archive, finding.rival);
   for (double* const number : {&finding.evidence, &finding.margin, &finding.explained}) {
     archive.any_number(*number);
-  }
-}
-
-// Of an archive, which has no shares from before a change.
-void derive_before(std::span<Finding> findings) {
-  std::vector<double> shares(kMostInputs, 1.0);
-  for (Finding& finding : findings) {
-    for (std::size_t i = 0; i < finding.count; ++i) {
-      const Cause& cause = finding.causes[i];
-      if (cause.kind == CauseKind::thruster) {
-        finding.before[i] = shares[cause.place];
-        if (finding.state == FindingState::named) {
-          shares[cause.place] = cause.size;
-        }
-      }
-    }
   }
 }
 
@@ -140,8 +128,8 @@ Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& stat
 }
 
 void Diagnosis::State::update(std::span<const double> x, std::span<const double> y, double t) {
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (!std::ranges::all_of(x, finite) || !std::ranges::all_of(y, finite) || !finite(t) ||
+  const auto usable = [](double value) { return std::abs(value) <= kMostValue; };
+  if (!std::ranges::all_of(x, usable) || !std::ranges::all_of(y, usable) || !std::isfinite(t) ||
       !moves(x, t)) {
     return;
   }
@@ -435,7 +423,6 @@ void Diagnosis::State::visit(Archive& archive) {
                [&](Finding& finding) { visit_finding(archive, finding); });
   shares_.visit(archive);
   if (archive.loading()) {
-    derive_before(findings_);
     shares_.dead_thrust(monitor_.terms(), delta_);
     monitor_.expect_thrust(delta_);
   }

@@ -11,21 +11,11 @@
 #include "kelpie/motion/attitude.hpp"
 #include "motion/free_fit.hpp"
 #include "motion/motion_terms.hpp"
+#include "motion/tuning.hpp"
 #include "motion/weak_form.hpp"
 
 namespace kelpie {
 namespace {
-
-// Chosen by hand.
-constexpr struct FactorTuning {
-  Eigen::Index most_windows = 20000;  // of the common fit, spread over all drives
-  Eigen::Index windows_per_term = 5;
-  std::size_t most_terms = 64;
-  double most_error = 0.3;          // of a factor; above: not told
-  double least_volts_ratio = 1.02;  // of the highest to the lowest supply, to tell an exponent
-  double most_exponent = 3.0;
-  double exponent_step = 0.25;
-} kFactors;
 
 // A drive in the weak form; the last term is a constant.
 struct DriveWindows {
@@ -158,7 +148,7 @@ double find_exponent(const std::vector<DriveWindows>& drives, const MotionTerms&
     std::vector<DriveWindows> tried = drives;
     apply_volts(tried, terms, reference, exponent);
     const double errors =
-        fit_freely(pooled(tried), kIndependentPieces).noise.diagonal().array().log().sum();
+        fit_freely(pooled(tried), kIdentification.pieces).noise.diagonal().array().log().sum();
     if (errors < least) {
       least = errors;
       best = exponent;
@@ -192,7 +182,7 @@ void take_off_slow(std::vector<DriveWindows>& drives, const MotionTerms& terms,
   }
   found.volts = range_of(drives, &DriveWindows::volts);
   const auto [low, high] = found.volts;
-  if (low > 0.0 && high / low >= kFactors.least_volts_ratio) {
+  if (low > 0.0 && high / low >= kIdentification.least_volts_ratio) {
     found.exponent = find_exponent(drives, terms, 0.5 * (low + high));
     apply_volts(drives, terms, 0.5 * (low + high), *found.exponent);
   }
@@ -231,7 +221,7 @@ std::vector<EffectFactor> factors_of(const WeakRows& rows, const FreeFit& common
   if (rows.terms.rows() < static_cast<Eigen::Index>(kFewestFactorWindows)) {
     return factors;
   }
-  const FreeFit fit = fit_freely(factor_rows(rows, common, effects, terms), kIndependentPieces);
+  const FreeFit fit = fit_freely(factor_rows(rows, common, effects, terms), kIdentification.pieces);
   const Eigen::VectorXd errors = sandwich_errors(fit);
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
@@ -265,7 +255,7 @@ EffectFactors fit_factors(std::span<const DriveRows> drives, std::span<const std
   }
   EffectFactors found{.effects = effects_of(terms), .drives = {}};
   take_off_slow(windows, terms, found);
-  const FreeFit common = fit_freely(pooled(windows), kIndependentPieces);
+  const FreeFit common = fit_freely(pooled(windows), kIdentification.pieces);
   for (const DriveWindows& drive : windows) {
     found.drives.push_back(factors_of(drive.weak, common, found.effects, terms));
   }

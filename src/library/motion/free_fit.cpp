@@ -123,7 +123,6 @@ FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks) {
 }
 
 Eigen::VectorXd sandwich_errors(const FreeFit& fit) {
-  constexpr double kStudent = 1.043;  // 23 degrees
   const Eigen::MatrixXd inverse = equilibrated_inverse(fit.gram);
   return kStudent * (inverse * fit.scores * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
 }

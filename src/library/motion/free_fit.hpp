@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "core/quantile.hpp"
+#include "motion/tuning.hpp"
 #include "motion/weak_form.hpp"
 
 namespace kelpie {
@@ -26,12 +28,12 @@ FreeFit fit_freely(const WeakRows& rows, Eigen::Index blocks = 0);
 /// FreeFit::noise alone, without the covariance of the scores, which costs most.
 Eigen::MatrixXd free_noise(const WeakRows& rows);
 
-/// Pieces of a log whose scores count as independent. Chosen by hand.
-constexpr Eigen::Index kIndependentPieces = 24;
+/// The 0.95 quantile of Student's t with kIdentification.pieces − 1 degrees over the normal's.
+inline constexpr double kStudent = kIdentification.student90 / kNormal90;
 
-/// Standard errors of the coefficients of one axis, from a fit by kIndependentPieces: the roots of
-/// the diagonal of (FᵀWF)⁻¹ S (FᵀWF)⁻¹ with the covariance S of the scores (Liang & Zeger 1986),
-/// times the 0.95 quantile of Student's t with kIndependentPieces − 1 degrees over the normal's.
+/// Standard errors of the coefficients of one axis, from a fit by kIdentification.pieces: the roots
+/// of the diagonal of (FᵀWF)⁻¹ S (FᵀWF)⁻¹ with the covariance S of the scores (Liang & Zeger 1986),
+/// times kStudent.
 Eigen::VectorXd sandwich_errors(const FreeFit& fit);
 
 }  // namespace kelpie

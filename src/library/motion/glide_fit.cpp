@@ -10,22 +10,10 @@
 #include "core/eigen.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/free_fit.hpp"
+#include "motion/tuning.hpp"
 
 namespace kelpie {
 namespace {
-
-// Chosen by hand; the induced drag is that of Slocum gliders (Merckelbach et al. 2010: 1.5 is
-// (C_D1 of wings and hull) over the slope of the lift, within a factor of two of SeaExplorers').
-constexpr struct GlideTuning {
-  double reference_density = 1025.0;  // kg/m³
-  double induced = 1.5;
-  double least_slope = 0.05;     // of tan γ: no attack grows beyond all bounds
-  double most_attack_rad = 0.5;  // a stalled wing has no such lift
-  int attack_rounds = 10;        // halve the error each
-  int rounds = 25;
-  double least_gain = 1e-5;  // of the squares: a smaller one ends the search
-  GlideParameters step{1.0, 1e-3, 1e-1, 1.0, 1e-4, 0.1};  // of a derivative
-} kGlide;
 
 double path_angle(double pitch, double attack) {
   double alpha = 0.0;
@@ -135,14 +123,14 @@ GlideFit fit_glide(std::span<const GlideRows> parts, const GlideParameters& star
   GlideFit fit{.parameters = start};
   WeakRows rows = step_rows(parts, start, free);
   fit.rows = static_cast<std::size_t>(rows.terms.rows());
-  if (rows.terms.rows() <= 2 * kIndependentPieces) {
+  if (rows.terms.rows() <= 2 * kIdentification.pieces) {
     throw InputError("too few rows with a vertical speed or a speed through the water: " +
                      std::to_string(fit.rows) + ", more than " +
-                     std::to_string(2 * kIndependentPieces) + " are needed");
+                     std::to_string(2 * kIdentification.pieces) + " are needed");
   }
   FreeFit linear;
   for (int round = 0; round < kGlide.rounds; ++round) {
-    linear = fit_freely(rows, kIndependentPieces);
+    linear = fit_freely(rows, kIdentification.pieces);
     const double usual = std::sqrt(linear.noise(0, 0));
     const double before = robust_squares(rows.acceleration.col(0), usual);
     double share = 1.0;
@@ -162,7 +150,7 @@ GlideFit fit_glide(std::span<const GlideRows> parts, const GlideParameters& star
       break;
     }
   }
-  linear = fit_freely(rows, kIndependentPieces);
+  linear = fit_freely(rows, kIdentification.pieces);
   const Eigen::VectorXd errors = sandwich_errors(linear);
   for (std::size_t k = 0; k < free.size(); ++k) {
     fit.errors[free[k]] = kGlide.step[free[k]] * errors(static_cast<Eigen::Index>(k));
@@ -172,10 +160,10 @@ GlideFit fit_glide(std::span<const GlideRows> parts, const GlideParameters& star
 
 std::pair<double, double> fit_slope(std::span<const double> x, std::span<const double> y) {
   const WeakRows rows{as_vector(y), as_vector(x), {}};
-  if (rows.terms.rows() < 2 * kIndependentPieces || !(rows.terms.squaredNorm() > 0.0)) {
+  if (rows.terms.rows() < 2 * kIdentification.pieces || !(rows.terms.squaredNorm() > 0.0)) {
     return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   }
-  const FreeFit fit = fit_freely(rows, kIndependentPieces);
+  const FreeFit fit = fit_freely(rows, kIdentification.pieces);
   return {fit.coefficients(0, 0), sandwich_errors(fit)(0)};
 }
 

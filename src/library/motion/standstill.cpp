@@ -13,6 +13,7 @@ Standstill::Standstill(std::vector<std::size_t> watched)
       last_(watched_.size(), std::numeric_limits<double>::quiet_NaN()),
       since_(watched_.size()),
       run_(watched_.size()),
+      held_(watched_.size()),
       longest_(watched_.size()),
       frozen_(watched_.size()),
       stopped_(watched_.size()) {}
@@ -22,20 +23,22 @@ void Standstill::update(std::span<const double> x, double t) {
     const double value = x[watched_[i]];
     if (value == last_[i]) {
       ++run_[i];
+      ++held_[i];
       continue;
     }
-    if (frozen_[i] == 0) {
-      longest_[i] = std::max(longest_[i], run_[i]);
-    }
+    begin_hold(i, t);
     frozen_[i] = 0;
     run_[i] = 0;
     last_[i] = value;
-    since_[i] = t;
   }
   for (std::size_t i = 0; i < watched_.size(); ++i) {
+    const bool moving = others_move(i);
+    if (!moving && frozen_[i] == 0) {  // a rest of the vehicle tells nothing of a sensor
+      begin_hold(i, t);
+    }
     const bool long_enough =
-        run_[i] >= std::max(kDiagnosis.frozen_rows, kDiagnosis.frozen_factor * longest_[i]) &&
-        t - since_[i] >= kDiagnosis.frozen_s && others_move(i);
+        held_[i] >= std::max(kDiagnosis.frozen_rows, kDiagnosis.frozen_factor * longest_[i]) &&
+        t - since_[i] >= kDiagnosis.frozen_s && moving;
     stopped_[i] = frozen_[i] == 0 && long_enough ? 1 : 0;
     frozen_[i] = frozen_[i] != 0 || long_enough ? 1 : 0;
   }
@@ -55,11 +58,20 @@ bool Standstill::others_move(std::size_t i) const {
   return false;
 }
 
+void Standstill::begin_hold(std::size_t i, double t) {
+  if (frozen_[i] == 0) {
+    longest_[i] = std::max(longest_[i], held_[i]);
+  }
+  held_[i] = 0;
+  since_[i] = t;
+}
+
 void Standstill::visit(Archive& archive) {
   for (std::size_t i = 0; i < watched_.size(); ++i) {
     archive.any_number(last_[i]);
     archive.number(since_[i]);
     archive.whole(run_[i]);
+    archive.whole(held_[i]);
     archive.whole(longest_[i]);
     archive.whole(frozen_[i], 0, 1);
   }

@@ -105,8 +105,37 @@ inline constexpr struct IdentificationTuning {
   double attitude_bias_rad = 0.001;  ///< [rad] of roll and pitch, by hand
   int curve_steps = 8;               ///< Gauss-Newton steps of the thrust curve, at most
   double least_curve_step = 0.01;    ///< [largest step] a smaller one ends the search
-  double least_volts_ratio = 1.02;   ///< of the highest to the lowest supply, to tell an exponent
+  /// Largest steps and values of lag [s], delay [s], dead band [full command] and exponent of the
+  /// supply: by hand.
+  std::array<double, 4> most_curve_steps{0.1, 0.1, 0.05, 0.5};
+  std::array<double, 4> most_of_curve{5.0, 2.0, 0.5, 3.0};
+  double unseen = 10.0;             ///< [share] error of a value that no log tells: by hand
+  double least_volts_ratio = 1.02;  ///< of the highest to the lowest supply, to tell an exponent
 } kIdentification;
+
+/// Of fit_factors(); by hand.
+inline constexpr struct FactorTuning {
+  long most_windows = 20000;    ///< [windows] of the common fit, spread over all drives
+  long windows_per_term = 5;    ///< [windows] least number per term
+  std::size_t most_terms = 64;  ///< of a drive
+  double most_error = 0.3;      ///< of a factor; a factor with a larger error is not told
+  double most_exponent = 3.0;   ///< of the supply
+  double exponent_step = 0.25;  ///< of the search
+} kFactors;
+
+/// Of fit_glide(); by hand, unless a line says otherwise.
+inline constexpr struct GlideTuning {
+  double reference_density = 1025.0;  ///< [kg/m³]
+  /// Over the slope of the lift: Slocum gliders (Merckelbach et al. 2010), and SeaExplorers within
+  /// a factor of two.
+  double induced = 1.5;
+  double least_slope = 0.05;     ///< of tan γ: no attack grows beyond all bounds
+  double most_attack_rad = 0.5;  ///< [rad] a stalled wing has no such lift
+  int attack_rounds = 10;        ///< halve the error each
+  int rounds = 25;               ///< of the search
+  double least_gain = 1e-5;      ///< of the squares: a smaller gain ends the search
+  std::array<double, 6> step{1.0, 1e-3, 1e-1, 1.0, 1e-4, 0.1};  ///< of a derivative (GlidePlace)
+} kGlide;
 
 /// Of fit_poses(): chosen on the simulated Dagon, seeds 1001 to 1006, where a line says no more.
 inline constexpr struct PathTuning {

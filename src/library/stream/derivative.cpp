@@ -11,6 +11,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
+#include "stream/require_range.hpp"
 #include "stream/tuning.hpp"
 
 namespace kelpie {
@@ -19,12 +20,6 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kHighestDegree = 4;
 constexpr double kRounding = stream::kTuning.window_rounding_s;
-
-void require_range(const std::string& field, double value, const Range& range) {
-  if (!range.holds(value)) {
-    throw InputError(field, number_text(value) + " is out of range; it has to be " + range.text());
-  }
-}
 
 }  // namespace
 

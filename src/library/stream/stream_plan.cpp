@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
+#include "stream/require_range.hpp"
 #include "stream/tuning.hpp"
 
 namespace kelpie {
@@ -14,14 +15,6 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& message) {
   throw InputError(name, message);
-}
-
-void require_range(const std::string& name, double value, const Range& range,
-                   const std::string& unit) {
-  if (!range.holds(value)) {
-    refuse(name,
-           number_text(value) + " is out of range; it has to be " + range.text() + " " + unit);
-  }
 }
 
 class NameCheck {

@@ -156,16 +156,6 @@ double renew(DualProblem& problem, std::size_t i) {
   return std::abs(problem.gradient()[i] - before);
 }
 
-void DualProblem::reshape(double epsilon, double c) {
-  const double largest = size() > 0 ? as_array(beta()).abs().maxCoeff() : 0.0;
-  const double scale = largest > c ? c / largest : 1.0;
-  loss_ = {epsilon, c};
-  for (std::size_t i = 0; i < size(); ++i) {
-    set_beta(i, scale * beta_[i]);
-  }
-  refresh();
-}
-
 void DualProblem::set_beta(std::size_t i, double beta) {
   beta_[i] = std::clamp(beta, -loss_.c, loss_.c);
   lower_offset_[i] =

@@ -75,10 +75,6 @@ class DualProblem {
   void set_beta(std::size_t i, double beta);
   void set_gradient(std::size_t i, double residual) { gradient_[i] = residual; }  ///< Sets g_i.
 
-  /// Changes ε and C. If a weight exceeds the new C, all weights are scaled down, which keeps Σβ =
-  /// 0. The problem has to be solved afterwards. Cost O(n²).
-  void reshape(double epsilon, double c);
-
   /// The table with the stored residuals; an empty problem is optimal. Cost O(n).
   Kkt kkt() const;
 

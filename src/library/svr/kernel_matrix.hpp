@@ -22,7 +22,6 @@ class KernelMatrix {
 
   std::size_t size() const { return diagonal_.size(); }
   std::size_t capacity() const { return capacity_; }
-  Storage storage() const { return singles_.empty() ? Storage::float64 : Storage::float32; }
 
   /// K_ij of two samples.
   double operator()(std::size_t i, std::size_t j) const {

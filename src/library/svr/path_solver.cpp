@@ -339,13 +339,6 @@ std::optional<SolveReport> PathSolver::restart(DualProblem& problem, const Budge
   return report;
 }
 
-SolveReport PathSolver::reshape(DualProblem& problem, double epsilon, double c) {
-  problem.reshape(epsilon, c);
-  rebuild(problem);
-  Budget budget;
-  return solve(problem, budget);
-}
-
 void PathSolver::rebuild(const DualProblem& problem) {
   move_.clear();
   joined_ = 0;

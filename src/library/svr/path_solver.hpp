@@ -48,9 +48,6 @@ class PathSolver final : public Solver {
     archive.whole(spent_);
   }
 
-  /// Changes ε and C (DualProblem::reshape) and follows the paths to the new optimum.
-  SolveReport reshape(DualProblem& problem, double epsilon, double c);
-
   std::size_t free_samples() const { return move_.free().size(); }
 
   /// Memory of a solver in bytes, beside the object itself.

@@ -105,7 +105,7 @@ Connection parse_connection(const std::string& text) {
       refuse(text, "names no host and port, as in \"udpout:192.168.2.2:14550\"");
     }
   }
-  connection.host = middle.empty() ? connection.host : middle;
+  connection.host = middle.empty() ? connection.host : without_brackets(middle);
   return connection;
 }
 

@@ -76,6 +76,17 @@ live::Configuration rows_configuration(const LiveArguments& options) {
       options.config, options.set);
 }
 
+// Columns are those of a table: of no connection, recording or demonstration.
+void check_columns(const LiveArguments& options) {
+  const std::string& replay = options.log.source.path;
+  if (options.log.has_columns() &&
+      (!options.mavlink.empty() || options.demo || replay.empty() || bag::is_bag(replay))) {
+    throw InputError("--inputs, --targets, --ignore, --time, --rate, --units, --pose",
+                     "say what the columns of a CSV file are; [log] of --config says what "
+                     "messages mean");
+  }
+}
+
 live::Configuration read_configuration(const LiveArguments& options) {
   const log::LogSource& replay = options.log.source;
   if (!options.told.empty()) {
@@ -87,11 +98,6 @@ live::Configuration read_configuration(const LiveArguments& options) {
   }
   if (!replay.path.empty() && !bag::is_bag(replay.path)) {
     return rows_configuration(options);
-  }
-  if (options.log.has_columns()) {
-    throw InputError("--inputs, --targets, --ignore, --time, --rate, --units",
-                     "say what the columns of a CSV file are; [log] of --config says what "
-                     "messages mean");
   }
   if (options.config.empty() && replay.path.empty()) {
     throw InputError(
@@ -331,13 +337,18 @@ LiveArguments with_told(LiveArguments options) {
 
 void live_command(const LiveArguments& given) {
   live::parse_speed(given.speed);
+  check_columns(given);
   const LiveArguments options = with_told(given);
   const live::Configuration configuration = configuration_of(options);
-  const file::OutFolder folder =
-      take_out_folder(configuration.live.out,
-                      {"model.json", format::kCheckpointName, format::kPreviousCheckpointName},
-                      {options.log.source.path, options.config});
+  std::vector<std::string> written{"model.json", format::kCheckpointName,
+                                   format::kPreviousCheckpointName};
   if (!options.told.empty()) {
+    written.emplace_back(kVehicleFile);
+  }
+  const file::OutFolder folder =
+      take_out_folder(configuration.live.out, written,
+                      {options.log.source.path, options.config, configuration.live.nominal});
+  if (!options.told.empty() && !options.check) {
     const std::filesystem::path file = std::filesystem::path(configuration.live.out) / kVehicleFile;
     file::write_file_whole(file, options.told);
     warn("kelpie: configuration: {}\n", file.string());

@@ -45,6 +45,10 @@ void play(const PlayArguments& options) {
   for (const std::string& topic : player.left_out()) {
     warn("kelpie: {}\n", topic);
   }
+  if (player.messages() == 0 && !player.left_out().empty() && !InterruptGuard::asked()) {
+    throw InputError({.file = options.bag.path, .line = 0, .field = {}},
+                     "has no message that can be published");
+  }
   say("{}: {} messages published in DDS domain {}\n", options.bag.path, player.messages(),
       settings.network.domain);
 }

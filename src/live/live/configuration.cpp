@@ -255,9 +255,7 @@ Endpoint parse_endpoint(const std::string& text, const std::string& field) {
       port > std::numeric_limits<std::uint16_t>::max()) {
     throw InputError(field, "'" + text + "' has to be a port, or host:port, as in 127.0.0.1:9870");
   }
-  if (endpoint.host.starts_with('[') && endpoint.host.ends_with(']')) {  // of IPv6
-    endpoint.host = endpoint.host.substr(1, endpoint.host.size() - 2);
-  }
+  endpoint.host = without_brackets(endpoint.host);
   endpoint.port = static_cast<std::uint16_t>(port);
   return endpoint;
 }

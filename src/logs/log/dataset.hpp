@@ -215,6 +215,10 @@ Dataset make_dataset(const Table& table, const Roles& roles);
 Dataset make_commands(const Table& table, const Roles& roles,
                       const std::map<std::string, double>& constants);
 
+/// Whether `row` comes right after row `before` in one stretch: the next row, at most kLongestStep
+/// usual steps later, of the same configuration.
+bool follows(const Dataset& data, std::size_t before, std::size_t row);
+
 /// The rows from `since_s` [s] on, of the log's own time. Throws InputError (file, --since) where
 /// fewer than two rows are left.
 Dataset rows_since(const Dataset& data, double since_s);

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/tuning.hpp"
@@ -44,6 +45,12 @@ void require_alike(const Dataset& first, const Dataset& next) {
 }
 
 }  // namespace
+
+bool follows(const Dataset& data, std::size_t before, std::size_t row) {
+  return row == before + 1 &&
+         data.times_s[row] - data.times_s[before] <= kLongestStep / data.rate_hz &&
+         data.configurations[row] == data.configurations[before];
+}
 
 Dataset rows_since(const Dataset& data, double since_s) {
   constexpr std::size_t kNeeded = 2;

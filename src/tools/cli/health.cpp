@@ -143,10 +143,11 @@ struct Reader {
 };
 
 // Sets the days of the logs' time 0, from their first and last times [s], and returns whether they
-// are dates. Without dates, logs follow each other at once.
+// are dates. `are_given`: the missions' days are those of --dates, which go before stamps. Without
+// dates, logs follow each other at once.
 template <typename Log>
 bool set_days(std::vector<Log>& logs, const std::vector<Mission>& missions,
-              const std::vector<std::pair<double, double>>& times_s) {
+              const std::vector<std::pair<double, double>>& times_s, bool are_given) {
   const bool in_stamps =
       std::ranges::all_of(times_s, [](const auto& times) { return times.first > kUnixTime; });
   const bool is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
@@ -154,9 +155,11 @@ bool set_days(std::vector<Log>& logs, const std::vector<Mission>& missions,
                         });
   double end = 0.0;
   for (std::size_t i = 0; i < missions.size(); ++i) {
-    logs[i].day = in_stamps  ? 0.0
+    const double first_day = times_s[i].first / health::kSecondsPerDay;
+    // The stamps keep the time of day.
+    logs[i].day = in_stamps  ? (are_given ? missions[i].day - std::floor(first_day) : 0.0)
                   : is_dated ? missions[i].day
-                             : end - times_s[i].first / health::kSecondsPerDay;
+                             : end - first_day;
     end = logs[i].day + times_s[i].second / health::kSecondsPerDay;
   }
   return is_dated;
@@ -183,7 +186,7 @@ health::HealthTable judge_drives(const HealthArguments& options,
     logs.push_back({.data = reader.read(mission.file), .mission = mission.name});
     times_s.emplace_back(logs.back().data.times_s.front(), logs.back().data.times_s.back());
   }
-  is_dated = set_days(logs, missions, times_s);
+  is_dated = set_days(logs, missions, times_s, !options.dates.empty());
   const log::Dataset& first = logs.front().data;
   const health::DriveColumns columns{
       .velocities = find_states(reader.first->settings.shared.states, first.input_names,
@@ -197,6 +200,23 @@ health::HealthTable judge_drives(const HealthArguments& options,
                      "states=SURGE,SWAY,YAW, in the order of the targets");
   }
   return health::judge_drives(logs, columns);
+}
+
+// Brings a column of time stamps to seconds. Returns its first and last finite stamps [s], NAN
+// where there is none.
+std::pair<double, double> take_seconds(log::Table& table, std::size_t column) {
+  const double unit_s = table.seconds_per_unit(column);
+  std::pair<double, double> ends{NAN, NAN};
+  for (double& value : table.columns[column]) {
+    value *= unit_s;
+    if (std::isfinite(value)) {
+      ends = {std::isnan(ends.first) ? value : ends.first, value};
+    }
+  }
+  if (unit_s != 1.0) {
+    table.units[column] = "s";
+  }
+  return ends;
 }
 
 // `files`: gets the logs with the glider's speeds, where wanted.
@@ -214,12 +234,11 @@ health::HealthTable judge_gliders(const HealthArguments& options,
     log::LogSource source = options.log.source;
     source.path = mission.file;
     log::Table table = open_log(source, config, roles).table;
-    const std::vector<double>& times = table.columns[table.find(columns.time)];
     require(table.rows() > 1, mission.file, "has fewer than two rows");
-    times_s.emplace_back(times.front(), times.back());
+    times_s.push_back(take_seconds(table, table.find(columns.time)));
     logs.push_back({.table = std::move(table), .mission = mission.name});
   }
-  is_dated = set_days(logs, missions, times_s);
+  is_dated = set_days(logs, missions, times_s, !options.dates.empty());
   std::vector<log::Table> glides;
   health::HealthTable judged =
       health::judge_gliders(logs, columns, options.writes_glides ? &glides : nullptr);
@@ -246,6 +265,8 @@ void run_health(const HealthArguments& options) {
   const std::vector<health::Baseline> baselines = baselines_of(options);
   Fleet fleet = find_logs(options);
   require(!options.writes_glides || !options.glider.empty(), "--glide-csv", "needs --glider");
+  require(options.glider.empty() || (options.log.inputs.empty() && options.log.targets.empty()),
+          "--inputs, --targets", "say nothing of a glider's log, whose columns --glider names");
   std::vector<std::string> inputs{options.config};
   std::vector<std::string> names;
   if (options.writes_glides) {

@@ -86,6 +86,11 @@ void require_one_start(const LearnArguments& options) {
                      "is the start of a new model, --from goes on with an earlier "
                      "model; give one of the two");
   }
+  static_cast<void>(body_frame(options.frame, false));
+  const bool turns = std::ranges::any_of(
+      options.nominal, [](const auto& file) { return fs::path(file).extension() == ".toml"; });
+  require(options.frame.empty() || turns, "--frame",
+          "says how a vehicle file of --nominal is turned; there is none");
   refuse_to_replace_start(options);
 }
 

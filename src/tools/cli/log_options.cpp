@@ -155,10 +155,8 @@ bool LogOptions::has_columns() const {
 }
 
 void LogOptions::add_columns_to(CLI::App& command) {
-  command.add_option("--inputs", inputs, "columns the model sees, separated by commas")
-      ->delimiter(',');
-  command.add_option("--targets", targets, "columns it predicts, separated by commas")
-      ->delimiter(',');
+  add_list(&command, "--inputs", inputs, "columns the model sees, separated by commas");
+  add_list(&command, "--targets", targets, "columns it predicts, separated by commas");
   add_list(&command, "--ignore", ignored, "columns that are neither, separated by commas");
   add_clock_options(command, time, rate_hz);
   add_units_option(command, units);
@@ -402,6 +400,7 @@ void add_accept_option(CLI::App& command, std::vector<std::string>& accept) {
       .add_option("--accept", accept,
                   "learn a log that is refused otherwise: implausible (targets that cannot be the "
                   "accelerations of the velocities, stamps that stand still)")
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({kImplausible}));
 }
 
@@ -471,7 +470,7 @@ std::string log_formats() {
 
 void add_bag_options(CLI::App& command, log::LogSource& source, const std::string& name,
                      const std::string& meaning) {
-  command.add_option(name, source.path, meaning)->required()->type_name("FILE");
+  add_file(&command, name, source.path, meaning)->required();
   command
       .add_option("--msg-dir", source.definitions,
                   "folder of .msg files, for types that the bag doesn't define")

@@ -14,15 +14,39 @@
 #include "kelpie/core/setting.hpp"
 
 namespace kelpie::cli {
+namespace {
+
+// NAME=VALUE in place of a file is a second value after an option that takes one.
+CLI::Validator no_assignment() {
+  return {[](const std::string& text) {
+            std::error_code none;
+            const bool is_value = text.find('=') != std::string::npos &&
+                                  text.find_first_of("*?[{") == std::string::npos &&
+                                  !std::filesystem::exists(text, none);
+            return is_value ? "'" + text +
+                                  "' is no file; to give several settings, repeat the option, as "
+                                  "in --set a=1 --set b=2"
+                            : std::string();
+          },
+          ""};
+}
+
+}  // namespace
 
 CLI::Option* add_file(CLI::App* command, const std::string& name, std::string& file,
                       const std::string& meaning) {
-  return command->add_option(name, file, meaning)->type_name("FILE");
+  CLI::Option* const option = command->add_option(name, file, meaning)->type_name("FILE");
+  return name.starts_with('-') ? option : option->check(no_assignment());
 }
 
 void add_files(CLI::App* command, const std::string& name, Words& files,
                const std::string& meaning) {
-  command->add_option(name, files, meaning)->type_name("FILE");
+  const bool is_option = name.starts_with('-');
+  CLI::Option* const option =
+      command->add_option(name, files, meaning)->type_name("FILE")->allow_extra_args(!is_option);
+  if (!is_option) {
+    option->check(no_assignment());
+  }
 }
 
 void add_folder(CLI::App* command, const std::string& name, std::string& folder,
@@ -63,7 +87,7 @@ void add_out(CLI::App* command, std::string& folder, const std::string& meaning)
 
 CLI::Option* add_list(CLI::App* command, const std::string& name, Words& words,
                       const std::string& meaning) {
-  return command->add_option(name, words, meaning)->delimiter(',');
+  return command->add_option(name, words, meaning)->delimiter(',')->allow_extra_args(false);
 }
 
 void AnswerOptions::add_to(CLI::App& command, const std::string& document) {
@@ -132,7 +156,7 @@ std::string shell_word(const std::string& word) {
 }
 
 void add_set(CLI::App* command, Words& set, const std::string& meaning) {
-  command->add_option("--set", set, meaning)->type_name("SETTING");
+  command->add_option("--set", set, meaning)->type_name("SETTING")->allow_extra_args(false);
 }
 
 void add_seed(CLI::App* command, std::uint64_t& seed, const std::string& meaning) {

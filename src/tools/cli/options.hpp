@@ -58,7 +58,7 @@ void add_examples(CLI::App* command, const std::string& first, const std::string
 /// The option --out of a folder with a default.
 void add_out(CLI::App* command, std::string& folder, const std::string& meaning);
 
-/// An option with words separated by commas.
+/// An option with words separated by commas, and repeatable; the next word is no part of it.
 CLI::Option* add_list(CLI::App* command, const std::string& name, Words& words,
                       const std::string& meaning);
 

@@ -70,6 +70,13 @@ RolloutSettings rollout_settings(const RolloutArguments& options) {
 log::Log read_with_inputs(const RolloutArguments& options, const TrainedModel& model,
                           const std::vector<std::string>& targets, const std::string& held_out) {
   const log::LogConfig config = log::read_log_config(options.config);
+  const auto require_same = [](const char* option, const std::vector<std::string>& given,
+                               const std::vector<std::string>& known) {
+    require(given.empty() || given == known, option,
+            "are those of the model: " + join_text(known, ","));
+  };
+  require_same("--inputs", options.log.inputs, model.input_names);
+  require_same("--targets", options.log.targets, model.target_names());
   log::Roles wanted = options.log.over(config.roles);
   wanted.inputs = model.input_names;
   wanted.targets = targets;
@@ -209,10 +216,12 @@ void refuse_judging(const RolloutArguments& options) {
 }
 
 void roll_commands(const RolloutArguments& options, const TrainedModel& model,
-                   const OpenLoop& loop) {
+                   const format::ColumnUnits& learned, const OpenLoop& loop) {
   Alignment alignment = model.alignment;
   alignment.water = {};  // velocities of --start are through the water
   const log::Log log = read_with_inputs(options, model, {}, {});
+  tell_other_units(model, learned, log::column_units(log.table, log.roles),
+                   options.log.source.path);
   const log::Dataset data = study::aligned(
       log::make_commands(log.table, log.roles, start_velocities(options, state_names(model, loop))),
       alignment);
@@ -253,7 +262,7 @@ void rollout(const RolloutArguments& options) {
         take_folder(options, {"result.json", "report.html", "example.csv"});
     write_judgement(options, judge(options, model, info.units, loop, data));
   } else {
-    roll_commands(options, model, loop);
+    roll_commands(options, model, info.units, loop);
   }
 }
 
@@ -276,6 +285,7 @@ void add_rollout(CLI::App& app) {
   constexpr double kDayS = 86'400.0;
   command->add_option("--horizons", options->horizons, "seconds after the start")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(within(kShortestS, kDayS))
       ->capture_default_str();
   add_known_current_option(*command, options->current);

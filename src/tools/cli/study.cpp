@@ -116,7 +116,7 @@ void write_study(const StudyArguments& options, const fleet::Results& results,
         .document = document,
         .files = {{"result", result}, {"report", (out.path() / kStudyHtml).string()}},
         .next = {fmt::format("kelpie study {} --out FOLDER --against {}   (after a change)",
-                             options.file, result)}},
+                             shell_word(options.file), shell_word(result))}},
        options.answer);
   if (const std::string text = complaints(options, results, changed); !text.empty()) {
     throw Failure(text);
@@ -142,7 +142,8 @@ void run_part(const StudyArguments& options, jobs::Executor& executor, StudyInpu
   run_missing(results, executor);
   say("part {}: {} of {} runs are done; when all parts are, `kelpie study {} --merge --out {}` "
       "writes the result\n",
-      part.text(), results.done(), results.assigned(), options.file, options.out);
+      part.text(), results.done(), results.assigned(), shell_word(options.file),
+      shell_word(options.out));
   if (const std::string text = failed_text(results); !text.empty()) {
     throw Failure(text);
   }

@@ -103,6 +103,8 @@ PlannedLog open_tune_log(const TuneArguments& options, const std::string& path) 
 }
 
 TuneLogs open_tune_logs(const TuneArguments& options) {
+  require(!options.since_s || options.more.empty(), "--since",
+          "is a time of one log; give that log alone");
   TuneLogs opened;
   std::vector<std::string> paths{options.log.source.path};
   paths.insert(paths.end(), options.more.begin(), options.more.end());
@@ -240,9 +242,11 @@ void add_tune(CLI::App& app) {
                       "number of the configuration to tune on; else the first in each log");
   add_file(command, "--config", options->config, "TOML file; what it sets is not searched");
   add_set(command, options->set, "key=value, not searched then (repeatable)");
-  command->add_option("--search", options->search,
-                      "name=low:high, name=low:high:linear|log|log1m or name=value,value,... "
-                      "(repeatable)");
+  command
+      ->add_option("--search", options->search,
+                   "name=low:high, name=low:high:linear|log|log1m or name=value,value,... "
+                   "(repeatable)")
+      ->allow_extra_args(false);
   constexpr std::size_t kMostCandidates = 100'000;
   command->add_option("--candidates", options->candidates, "to draw for each target")
       ->check(CLI::Range(std::size_t{1}, kMostCandidates))

@@ -20,6 +20,7 @@
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "vehicle/scenario_file.hpp"
+#include "vehicle/stability.hpp"
 #include "vehicle/thruster_frame.hpp"
 #include "vehicle/vehicle_text.hpp"
 
@@ -29,7 +30,6 @@ namespace {
 using vehicle::Thruster;
 using vehicle::VehicleParameters;
 
-constexpr std::array<const char*, 6> kAxes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr std::size_t kMostBytes = 1'000'000;  // of a table of thrusters
 constexpr std::array<const char*, 6> kPlaces{"x", "y", "z", "dx", "dy", "dz"};
 
@@ -203,17 +203,17 @@ void say_axes(const VehicleParameters& of) {
   std::vector<std::string> alone;
   for (std::size_t axis = 0; axis < driven.size(); ++axis) {
     if (driven.at(axis) == vehicle::AxisDrive::alone) {
-      alone.emplace_back(kAxes.at(axis));
+      alone.emplace_back(vehicle::axis_text(axis));
     }
   }
   say("{} thrusters, {} independent wrenches; driven by themselves: {}\n", of.thrusters.size(),
       vehicle::wrench_rank(of.thrusters), alone.empty() ? "no axis" : join_text(alone, ", "));
   for (std::size_t axis = 0; axis < driven.size(); ++axis) {
     if (driven.at(axis) == vehicle::AxisDrive::none) {
-      say("{} cannot be driven: no thruster pushes along this axis\n", kAxes.at(axis));
+      say("{} cannot be driven: no thruster pushes along this axis\n", vehicle::axis_text(axis));
     } else if (driven.at(axis) == vehicle::AxisDrive::together) {
       say("{} cannot be driven by itself: every push along this axis pushes another axis, too\n",
-          kAxes.at(axis));
+          vehicle::axis_text(axis));
     }
   }
 }
@@ -239,7 +239,8 @@ void add_vehicle(CLI::App& app) {
   add_file(made, "--thrusters", options->csv,
            "CSV file with the columns name,x,y,z,dx,dy,dz: place in m, direction; FRD");
   made->add_option("--thruster", options->thrusters,
-                   "NAME=x,y,z,dx,dy,dz: one thruster, over those of frame and file (repeatable)");
+                   "NAME=x,y,z,dx,dy,dz: one thruster, over those of frame and file (repeatable)")
+      ->allow_extra_args(false);
   add_file(made, "--like", options->like,
            "Vehicle file with the body, the water and the actuators");
   made->add_option("--mass", options->mass_kg, "kg; body and water by similarity with a BlueROV2")

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <span>
 
-#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "format/tuning.hpp"
 #include "kelpie/core/error.hpp"
@@ -181,10 +180,9 @@ study::RecordedDrive drive_of(const IdentifiedVehicle& vehicle, const log::Datas
                               const std::vector<std::size_t>& rows, const DriveColumns& columns,
                               Frame frame) {
   study::RecordedDrive drive;
-  const double longest_s = kLongestStep / data.rate_hz;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t row = rows[i];
-    if (i == 0 || row != rows[i - 1] + 1 || data.times_s[row] - data.times_s[row - 1] > longest_s) {
+    if (i == 0 || !log::follows(data, rows[i - 1], row)) {
       drive.starts.push_back(i);
     }
     const std::span<const double> inputs = data.input(row);

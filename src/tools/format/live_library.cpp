@@ -8,12 +8,15 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "file/atomic_file.hpp"
 #include "file/mapped_file.hpp"
 #include "kelpie/core/error.hpp"
@@ -52,19 +55,25 @@ int run(std::vector<std::string> words) {
   return status;
 }
 
+// The compiler of CC, which may have words more, as in "ccache cc".
+std::vector<std::string> compiler_words() {
+  const char* const named = std::getenv("CC");  // NOLINT(concurrency-mt-unsafe): before threads
+  std::istringstream text(named != nullptr ? named : "");
+  std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
+  return words.empty() ? std::vector<std::string>{"cc"} : words;
+}
+
 // A library compiled beside its place, and removed unless it was renamed.
 class LibraryDraft {
  public:
   LibraryDraft(const LiveFiles& files, const std::string& source)
       : source_(files.library.string() + ".draft.c"), library_(files.library.string() + ".draft") {
     file::write_file_whole(source_, source);
-    const char* const named = std::getenv("CC");  // NOLINT(concurrency-mt-unsafe): before threads
-    const std::string compiler = named != nullptr && *named != '\0' ? named : "cc";
-    const int status = run({compiler, "-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
-                            library_.string(), source_.string(), "-lm"});
-    if (status != 0) {
+    try {
+      compile(files);
+    } catch (...) {
       remove();
-      throw Failure("the C compiler '" + compiler + "' could not compile " + files.source.string());
+      throw;
     }
   }
   ~LibraryDraft() { remove(); }
@@ -76,6 +85,16 @@ class LibraryDraft {
   }
 
  private:
+  void compile(const LiveFiles& files) const {
+    std::vector<std::string> words = compiler_words();
+    const std::string compiler = join_text(words, " ");
+    words.insert(words.end(), {"-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
+                               library_.string(), source_.string(), "-lm"});
+    if (run(std::move(words)) != 0) {
+      throw Failure("the C compiler '" + compiler + "' could not compile " + files.source.string());
+    }
+  }
+
   void remove() const {
     std::error_code ignored;
     std::filesystem::remove(source_, ignored);

@@ -447,7 +447,7 @@ class ModelCode {
       coefficients.push_back(scaling.target.scale * function.term_weights()[k] /
                              scaling.term_scale[k]);
     }
-    return fmt::format("  /* {} */\n  {{ {}, {}, {}, {}, {}, {}, {}{} }},\n", member.name,
+    return fmt::format("  /* {} */\n  {{ {}, {}, {}, {}, {}, {}, {}{} }},\n", c_string(member.name),
                        text_.number(member.share), first, first + function.beta().size(),
                        text_.number(function.kernel().local().gamma()), text_.number(weights.s),
                        text_.number(weights.fine),

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
@@ -217,13 +216,10 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
   for (const std::size_t thruster : columns.thrusters) {
     planar.thrusters.push_back(data.input_names[thruster]);
   }
-  const double longest_s = kLongestStep / data.rate_hz;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t row = rows[i];
-    const bool follows = i > 0 && row == rows[i - 1] + 1 &&
-                         data.times_s[row] - data.times_s[row - 1] <= longest_s &&
-                         data.configurations[row] == data.configurations[row - 1];
-    add_row(planar, data.input(row), data.times_s[row], columns, follows);
+    add_row(planar, data.input(row), data.times_s[row], columns,
+            i > 0 && log::follows(data, rows[i - 1], row));
   }
   return planar;
 }

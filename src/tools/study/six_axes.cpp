@@ -9,7 +9,6 @@
 #include <span>
 
 #include "core/quantile.hpp"
-#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/signal_names.hpp"
@@ -162,11 +161,9 @@ SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_
   six.starts.clear();
   six.thrusters = placed_thrusters(vehicle);
   six.nominal_volts = vehicle.battery.nominal_v > 0.0 ? vehicle.battery.nominal_v : 1.0;
-  const double longest_s = kLongestStep / data.rate_hz;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t row = rows[i];
-    if (i == 0 || row != rows[i - 1] + 1 || data.times_s[row] - data.times_s[row - 1] > longest_s ||
-        data.configurations[row] != data.configurations[row - 1]) {
+    if (i == 0 || !log::follows(data, rows[i - 1], row)) {
       six.starts.push_back(i);
     }
     const std::span<const double> inputs = data.input(row);

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <string>
 
+#include "vehicle/stability.hpp"
 #include "vehicle/tuning.hpp"
 
 namespace kelpie::vehicle {
 namespace {
-
-constexpr std::array<const char*, 6> kAxes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 double greatest_force(const std::vector<Thruster>& thrusters) {
   double force = 0.0;
@@ -55,8 +54,9 @@ Pilot::Pilot(const VehicleParameters& vehicle, const ExcitationSettings& setting
       thrusts_from_wrench_(
           thrust_axes(vehicle.thrusters).completeOrthogonalDecomposition().pseudoInverse()) {
   const bool binary = settings.mode == ExcitationMode::prbs;
-  for (const char* const axis : kAxes) {
-    wishes_.emplace_back(settings, binary, RandomStream(seed, std::string("pilot/") + axis));
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    wishes_.emplace_back(settings, binary,
+                         RandomStream(seed, std::string("pilot/") + axis_text(axis)));
   }
   for (const Thruster& thruster : thrusters_) {
     dithers_.emplace_back(settings, false, RandomStream(seed, "dither/" + thruster.name));

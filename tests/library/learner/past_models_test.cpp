@@ -145,12 +145,40 @@ TEST(PastModels, TwoModelsOfOneVehicleBecomeOne) {
   Voyage earlier;
   earlier.drive(0, 1500);
   PastModel twin = earlier.models().front();
+  twin.info.earlier = twin.info.samples;
   Voyage voyage;
   ASSERT_TRUE(voyage.learner().add_past(twin));
   twin.info.number = 2;
   ASSERT_TRUE(voyage.learner().add_past(twin));
   voyage.drive(0, 3000);
-  EXPECT_EQ(voyage.models().size(), 1U);
+  ASSERT_EQ(voyage.models().size(), 1U);
+  EXPECT_EQ(voyage.models()[0].info.earlier, 2 * twin.info.samples);
+}
+
+TEST(PastModels, AWithdrawalFindsThePlaceOfTheFormerVehicleTaken) {
+  OnlineSvrSettings settings = settings_for_plants();
+  settings.memory = 1;
+  OnlineSvr first(2, settings);
+  OnlineSvr second(2, settings);
+  PastModels memory(first.buffer(), settings);
+  double time = 0.0;
+  const auto drive = [&](OnlineSvr& service, int plant) {
+    for (const Sample& sample : wandering_stream(3, 600, 0.02, plant)) {
+      service.update(sample.z, sample.y, time += 0.25);
+      memory.observe(sample.z, sample.y, 0.05, time);
+      if (memory.due()) {
+        memory.keep(service, service.model(), TermChange(2, 0), time);
+      }
+    }
+  };
+  drive(first, 0);
+  memory.promote_challenger(time);
+  drive(second, 1);
+  const std::int64_t withdrawn = memory.models()[0].info.number;
+  EXPECT_EQ(withdrawn, 2);
+  memory.withdraw();
+  drive(first, 0);
+  EXPECT_NE(memory.models()[0].info.number, withdrawn) << "the other vehicle's number";
 }
 
 // A past model is given at once, whatever the budget of updates.

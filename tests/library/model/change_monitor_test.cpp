@@ -101,6 +101,25 @@ TEST(ChangeMonitor, BelievesInAHalvedThrusterAtAnyRate) {
   }
 }
 
+// Stamps since 1970 are rounded to 0.2 µs.
+TEST(ChangeMonitor, RowsCountHoweverTheirStampsAreRounded) {
+  const auto saved = [](ChangeMonitor& monitor) {
+    Archive archive;
+    monitor.visit(archive);
+    return archive.bytes();
+  };
+  PlanarDrive drive;
+  drive.drive(1, 100, 0.24);
+  for (const double zero : {0.0, 1.7e9}) {
+    ChangeMonitor monitor = make_monitor();
+    for (std::size_t i = 0; i < drive.x.size(); ++i) {
+      const std::string before = saved(monitor);
+      monitor.update(drive.x[i], drive.y[i], zero + 0.24 * static_cast<double>(i));
+      EXPECT_NE(saved(monitor), before) << zero << " " << i;
+    }
+  }
+}
+
 // Half of the thrust n1|n1| is the thrust of n1 √½.
 TEST(ChangeMonitor, TellsTheFactorOfACommandThatHasLostHalfOfItsEffect) {
   ChangeMonitor monitor = make_monitor();

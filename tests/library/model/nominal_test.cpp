@@ -100,6 +100,16 @@ TEST(Nominal, AKnownVehicleIsPredictedFromTheFirstSamplesOn) {
   EXPECT_GT(r2(about), r2(without)) << "a thrust and a drag 30 % too small";
 }
 
+TEST(Nominal, AKnownVehicleIsPredictedBeforeTheScaleIsFinal) {
+  const PlanarDrive drive = first_minutes();
+  DynamicsModel with = model_with(nominal());
+  DynamicsModel without = new_model();
+  learn(with, drive, 0, 45);
+  learn(without, drive, 0, 45);
+  EXPECT_GT(r2(with), 0.2);
+  EXPECT_LT(r2(without), 0.0);
+}
+
 TEST(Nominal, AWrongVehicleIsForgotten) {
   const PlanarDrive drive = first_minutes();
   DynamicsModel wrong = model_with(nominal(-1.0));

@@ -254,12 +254,12 @@ TEST(AxisGradient, BeforeThereIsAModelIsZeroBesideTheMean) {
   std::array<double, 2> mean{};
   std::array<double, 4> jacobian{1.0, 1.0, 1.0, 1.0};
   const std::array<double, 4> zeros{};
-  learn(model, samples, 0, 40);
+  learn(model, samples, 0, 9);
   model.predict_with_jacobian(samples.x[50], y, jacobian);
   model.predict(samples.x[50], mean);
   EXPECT_EQ(y, mean);
   EXPECT_EQ(jacobian, zeros);
-  learn(model, samples, 40, 60);
+  learn(model, samples, 9, 60);
   model.predict_with_jacobian(samples.x[50], y, jacobian);
   EXPECT_NE(jacobian[0], 0.0);
 }

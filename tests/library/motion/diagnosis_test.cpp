@@ -317,6 +317,41 @@ TEST(Diagnosis, GoesOnFromWhatWasSavedToTheLastBit) {
   EXPECT_EQ(saved(parts), saved(whole));
 }
 
+// Only so many findings are kept: the first, of the weak thruster, is gone.
+TEST(Diagnosis, TheShareBeforeIsSavedHoweverManyFindingsFollowed) {
+  Diagnosis diagnosis = drive_diagnosis();
+  Drive drive(1);
+  const Drive::Fault weak{.thrust = {0.5, 1.0, 1.0}};
+  Drive::Fault flaky = weak;
+  flaky.frozen = true;
+  drive.show(kBefore, {}, diagnosis);
+  drive.show(2 * kMinute, weak, diagnosis);
+  for (std::size_t i = 0; i <= Diagnosis::kMostFindings; ++i) {
+    drive.show(30, flaky, diagnosis);
+    drive.show(20, weak, diagnosis);
+  }
+  drive.show(kBefore, weak, diagnosis);
+  drive.show(2 * kMinute, {}, diagnosis);
+  ASSERT_NEAR(diagnosis.findings().back().before[0], 0.5, 0.05);
+  const std::string bytes = saved(diagnosis);
+  Archive archive(bytes);
+  Diagnosis resumed = drive_diagnosis();
+  resumed.visit(archive);
+  EXPECT_EQ(resumed.findings().back().before, diagnosis.findings().back().before);
+}
+
+TEST(Diagnosis, AnAbsurdSampleLeavesNoTrace) {
+  Diagnosis whole = drive_diagnosis();
+  Diagnosis struck = drive_diagnosis();
+  struck.update(std::array{1e200, 0.0, 0.0, 1.0, 1.0, 1.0}, std::array{0.0, 0.0, 0.0}, 0.1);
+  Drive drive(1);
+  drive.show(kMinute, {}, [&](const Drive::Row& x, const Drive::Accelerations& y, double t) {
+    whole.update(x, y, t);
+    struck.update(x, y, t);
+  });
+  EXPECT_EQ(saved(struck), saved(whole));
+}
+
 TEST(Diagnosis, RefusesASavedStateThatIsCutShort) {
   Diagnosis diagnosis = after({.drag = 1.5}, 11);
   const std::string bytes = saved(diagnosis);

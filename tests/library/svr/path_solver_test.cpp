@@ -177,26 +177,6 @@ TEST(PathSolver, ForgettingASampleAndAddingItAgainReturnsToTheSameModel) {
   }
 }
 
-TEST(PathSolver, FollowsOtherValuesOfEpsilonAndC) {
-  const Problem problem = smooth_problem(6, 90);
-  Buffer buffer(problem, 90);
-  for (std::size_t i = 0; i < 90; ++i) {
-    buffer.add(i);
-  }
-  for (const auto& [epsilon, c] : std::vector<std::pair<double, double>>{
-           {0.1, 0.3}, {0.02, 0.3}, {0.0, 20.0}, {0.4, 20.0}, {5.0, 1.0}, {0.1, 5.0}}) {
-    EXPECT_TRUE(buffer.solver().reshape(buffer.dual(), epsilon, c).converged);
-    EXPECT_LE(kkt_afresh(buffer.dual()).gap(), 1e-9);
-    Problem other = problem;
-    other.epsilon = epsilon;
-    other.c = c;
-    DualProblem smo = testing::dual_of(other);
-    SmoSolver(1e-9, kBound).solve(smo);
-    EXPECT_NEAR(objective(buffer.dual()), objective(smo), 1e-7 * std::abs(objective(smo)) + 1e-9)
-        << epsilon << " " << c;
-  }
-}
-
 // In slices of a few steps, each of which leaves β within its bounds.
 TEST(PathSolver, ARestartInSlicesEndsAtTheOptimum) {
   const Problem problem = smooth_problem(8, 80);

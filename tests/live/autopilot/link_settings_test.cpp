@@ -26,6 +26,8 @@ TEST(LinkSettings, ConnectionsReadAsPeopleWriteThem) {
             (Connection{.kind = Kind::udp_listen, .host = "0.0.0.0", .port = 14551}));
   EXPECT_EQ(autopilot::parse_connection("udpout:192.168.2.2:14550"),
             (Connection{.kind = Kind::udp_send, .host = "192.168.2.2", .port = 14550}));
+  EXPECT_EQ(autopilot::parse_connection("udpout:[::1]:14550"),
+            (Connection{.kind = Kind::udp_send, .host = "::1", .port = 14550}));
   EXPECT_EQ(
       autopilot::parse_connection("serial:/dev/serial/by-id/usb:1:115200"),
       (Connection{.kind = Kind::serial, .device = "/dev/serial/by-id/usb:1", .baud = 115'200}));

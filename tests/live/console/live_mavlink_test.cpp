@@ -105,6 +105,25 @@ TEST_F(LiveMavlink, AVehicleTellsWhatItsMessagesMean) {
   EXPECT_NE(checked.out.find("m2: SERVO_OUTPUT_RAW:servo1_raw"), std::string::npos) << checked.out;
 }
 
+TEST_F(LiveMavlink, ACheckAsksTheVehicleAndWritesNothing) {
+  const std::string port = free_port();
+  Running live(folder_.path(), {"live", "--mavlink", "udp:" + port, "--check", "--out", "out"});
+  Vehicle vehicle(port);
+  vehicle.rov.is_armed = true;
+  vehicle.rov.parameters = {
+      {"FRAME_CONFIG", 1.0}, {"MOT_1_DIRECTION", 1.0}, {"MOT_2_DIRECTION", 1.0}};
+  for (int output = 1; output <= 16; ++output) {
+    vehicle.rov.parameters["SERVO" + std::to_string(output) + "_FUNCTION"] =
+        output < 3 ? 32.0 + output : 0.0;
+  }
+  live.wait_until([&] {
+    vehicle.go();
+    return false;
+  });
+  EXPECT_EQ(live.exit_code(), 0) << live.terminal_text();
+  EXPECT_FALSE(exists("out/vehicle.toml"));
+}
+
 TEST_F(LiveMavlink, AConnectionWithoutAVehicleIsTold) {
   const Outcome odd = run("live --mavlink nowhere --out out");
   EXPECT_EQ(odd.exit_code, 2);

@@ -100,5 +100,22 @@ TEST_F(LiveCommand, ACheckLeavesNothingBehind) {
   EXPECT_FALSE(exists("out"));
 }
 
+TEST_F(LiveCommand, TheStartOfARunIsNotOverwritten) {
+  write_mission(60.0);
+  ASSERT_EQ(live("--speed max --out out").exit_code, 0);
+  const std::string model = model_of("out");
+  expect_refused(
+      "--config x.toml --from mission.mcap --speed max --fresh --out out --nominal out/model.json",
+      "would overwrite an input");
+  EXPECT_EQ(model_of("out"), model);
+}
+
+TEST_F(LiveCommand, ColumnsAreThoseOfATable) {
+  write_mission(30.0);
+  expect_refused("--demo --inputs nonsense --duration 20 --speed max", "--inputs, --targets");
+  expect_refused("--config x.toml --pose x,y,psi --check", "--pose: say what the columns");
+  expect_refused("--mavlink udp:14550 --rate 4", "say what the columns");
+}
+
 }  // namespace
 }  // namespace kelpie::live_refusals_test

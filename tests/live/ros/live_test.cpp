@@ -244,6 +244,20 @@ TEST_F(LiveTopics, ARecordingsTopicWhoseNameIsNoneIsLeftOutAndSaid) {
       << played.err;
 }
 
+TEST_F(LiveTopics, ARecordingWithNothingToPlayIsRefused) {
+  std::vector<bag::Topic> topics = testing::mission_topics();
+  for (std::size_t k = 0; k < topics.size(); ++k) {
+    topics[k].name = "/no name/" + std::to_string(k);
+  }
+  testing::write_text(folder_ / "mission.mcap",
+                      testing::mcap_of(topics, testing::little_mission(1.0)));
+  testing::write_text(folder_ / "x.toml", config());
+  const Outcome played = run("play mission.mcap --config x.toml --speed max");
+  EXPECT_EQ(played.exit_code, 2) << played.out;
+  EXPECT_NE(played.err.find("has no message that can be published"), std::string::npos)
+      << played.err;
+}
+
 TEST_F(LiveTopics, AQualityThatDoesNotMatchIsSaid) {
   testing::write_text(folder_ / "x.toml", config("reliable = true"));
   Peer peer(KELPIE_PEER_FAST);

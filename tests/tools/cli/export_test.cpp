@@ -117,6 +117,11 @@ TEST_F(Export, WritesALibraryWithABlockAndRefusesWhatItCannot) {
   EXPECT_EQ(without.exit_code, 1);
   EXPECT_NE(without.err.find("CC names another"), std::string::npos) << without.err;
   EXPECT_FALSE(exists("a.so"));
+  EXPECT_FALSE(exists("a.so.draft.c"));
+  ::setenv("CC", "env cc", 1);  // NOLINT(concurrency-mt-unsafe): one thread
+  const Outcome words = run("export out/model.json --live a.so");
+  ::unsetenv("CC");  // NOLINT(concurrency-mt-unsafe): one thread
+  testing::succeeded(words);
 }
 
 }  // namespace

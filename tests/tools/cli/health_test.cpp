@@ -136,6 +136,22 @@ std::string glides() {
   return text;
 }
 
+// The same log with other times.
+std::string shifted(const std::string& text, double scale, double offset_s) {
+  std::size_t at = text.find('\n') + 1;
+  std::string moved = text.substr(0, at);
+  while (at < text.size()) {
+    const std::size_t end = text.find('\n', at) + 1;
+    const std::size_t comma = text.find(',', at);
+    moved += fmt::format("{}", scale * std::stod(text.substr(at, comma - at)) + offset_s);
+    moved += text.substr(comma, end - comma);
+    at = end;
+  }
+  return moved;
+}
+
+const std::string kGlider = " --glider pitch=p,ballast=b,depth=d,sinking=w";
+
 TEST_F(Health, TwoLogsOfOneNameLoseNoGlides) {
   for (const char* const folder : {"a", "b"}) {
     std::filesystem::create_directory(folder_ / folder);
@@ -177,6 +193,30 @@ TEST_F(Health, SaysWhatChangedBetweenTwoMissionsOfAGlider) {
     return parsed("learned/result.json")["axes"][0]["r2"]["final"].get<double>();
   };
   EXPECT_GT(r2("pitch,ballast,depth,lin,glide_sinking"), 0.98);
+}
+
+// A vehicle whose clock is wrong.
+TEST_F(Health, GivenDatesGoBeforeStamps) {
+  const std::string text = glides();
+  for (const char* const name : {"a.csv", "b.csv"}) {
+    write(name, shifted(text, 1.0, 1'546'300'800.0));  // 2019-01-01
+  }
+  succeeded(run("health a.csv b.csv --dates 2026-03-01,2026-03-02 --out out" + kGlider));
+  const nlohmann::json episodes = parsed("out/health.json")["vehicles"][0]["episodes"];
+  ASSERT_GE(episodes.size(), 2U);
+  EXPECT_NEAR(episodes.front()["day"].get<double>(), 20513.5, 0.5);  // 2026-03-01
+  EXPECT_NEAR(episodes.back()["day"].get<double>(), 20514.5, 0.5);
+}
+
+TEST_F(Health, AGlidersTimeIsConverted) {
+  write("dive.csv", glides());
+  succeeded(run("health dive.csv --out s" + kGlider));
+  write("dive.csv", shifted(glides(), 1e3, 0.0));
+  succeeded(run("health dive.csv --units time=ms --glide-csv --out ms" + kGlider));
+  EXPECT_EQ(parsed("ms/health.json"), parsed("s/health.json"));
+  EXPECT_EQ(content("ms/dive_glide.csv").find("ms"), std::string::npos);
+  expect_nothing_written("health dive.csv --inputs p" + kGlider,
+                         "--inputs, --targets: say nothing");
 }
 
 }  // namespace

@@ -261,5 +261,25 @@ TEST_F(Learn, ItsInputsMayBePipesAndStandWhereResultsGoOnlyUnderOtherNames) {
   testing::expect_refused(outcome, "files/model.json: --out: would overwrite an input");
 }
 
+TEST_F(Learn, ALogMayFollowAnyOption) {
+  const std::string quick = " --split tail --out out";
+  for (const char* const options :
+       {"--set buffer=50 log.csv", "--inputs u,n --targets udot log.csv --set buffer=50",
+        "--accept implausible log.csv --set buffer=50"}) {
+    testing::succeeded(run("learn " + std::string(options) + quick));
+  }
+  testing::succeeded(run("export --units u=m/s,udot=m/s^2 out/model.json --c x.c"));
+  testing::succeeded(run("learn --nominal out/model.json log.csv --set buffer=50 --out next"));
+  expect_refused("log.csv --set buffer=50 c=1",
+                 "'c=1' is no file; to give several settings, "
+                 "repeat the option, as in --set a=1 --set b=2");
+  expect_refused("--set buffer=50 c=1 log.csv", "'c=1' is no file");
+}
+
+TEST_F(Learn, AFrameWithoutAVehicleFileIsRefused) {
+  expect_refused("log.csv --frame nonsense", "'nonsense' is no frame");
+  expect_refused("log.csv --frame FRD", "--frame: says how a vehicle file of --nominal is turned");
+}
+
 }  // namespace
 }  // namespace kelpie::learn_test

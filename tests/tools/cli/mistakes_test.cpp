@@ -96,7 +96,8 @@ class Mistakes : public testing::CommandTest {
   void expect(int exit_code, const std::string& log, const std::string& options,
               const std::string& message) {
     write("log.csv", log);
-    expect_of(exit_code, "learn log.csv --quiet --set preset=paper buffer=50 --out out " + options,
+    expect_of(exit_code,
+              "learn log.csv --quiet --set preset=paper --set buffer=50 --out out " + options,
               message);
   }
   void expect_of(int exit_code, const std::string& command, const std::string& message) {
@@ -219,10 +220,10 @@ TEST_F(Mistakes, CommandsThatMoveNothing) {
           row.n = normal(random);
           row.m = normal(random);
         }));
-  expect_of(0, "learn log.csv --set preset=paper buffer=50 --out out",
+  expect_of(0, "learn log.csv --set preset=paper --set buffer=50 --out out",
             "WARNING: these commands do not move this vehicle");
   // No model to go on with: a look at the log comes next.
-  const Outcome outcome = run("learn log.csv --set preset=paper buffer=50 --out out");
+  const Outcome outcome = run("learn log.csv --set preset=paper --set buffer=50 --out out");
   EXPECT_NE(outcome.out.find("kelpie inspect log.csv"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("kelpie rollout"), std::string::npos) << outcome.out;
 }

@@ -73,7 +73,8 @@ TEST_F(Nominal, EarlierModelsAreAStart) {
   testing::succeeded(run("learn log.csv --out without" + options));
   testing::succeeded(run("learn log.csv --nominal before/model.json --out one" + options));
   testing::succeeded(
-      run("learn log.csv --nominal before/model.json without/model.json --out two" + options));
+      run("learn log.csv --nominal before/model.json --nominal without/model.json --out two" +
+          options));
   EXPECT_GT(early_r2("one"), early_r2("without"));
   EXPECT_EQ(early_r2("one"), early_r2("two")) << "the mean of two equal models";
   EXPECT_EQ(result("two")["nominal"], "before/model.json, without/model.json");

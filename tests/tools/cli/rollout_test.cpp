@@ -64,6 +64,9 @@ TEST_F(RolloutCommand, FollowsCommandsFromAStart) {
   // At rest 0.01 · 25 = 2 u² + 0.3 u.
   const std::string last = path.substr(path.rfind('\n', path.size() - 2) + 1);
   EXPECT_NEAR(std::stod(last.substr(last.find(',') + 1)), 0.2865, 0.01) << last;
+  testing::succeeded(run("learn log.csv --units n=rev/s --out out"));
+  EXPECT_NE(rollout("commands.csv --start u=0.1 --units n=V").err.find("the model learned rev/s"),
+            std::string::npos);
 }
 
 TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
@@ -74,6 +77,8 @@ TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
       {"log.csv --horizons 0", "--horizons: '0' has to be a number from 0.001 to 86400"},
       {"log.csv --step -1", "--step: '-1' has to be a number from 0.001 to 60"},
       {"absent.csv", "absent.csv"},
+      {"log.csv --inputs nonsense", "--inputs: are those of the model: u,n"},
+      {"log.csv --targets x,y", "--targets: are those of the model: udot"},
       {"log.csv --start u=0 --json", "--json: belongs to the judgement of a log"},
       {"log.csv --start u=0 --verbose", "--verbose: belongs to the judgement of a log"},
       {"log.csv --start u=0 --horizons 5", "--horizons: belongs to the judgement of a log"},

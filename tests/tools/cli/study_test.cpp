@@ -68,6 +68,12 @@ TEST_F(Study, HasTheFiguresOfLearnWhateverTheThreads) {
   EXPECT_NE(outcome.out.find("\nvehicles: no cause of a change was found\n"), std::string::npos)
       << outcome.out;
   EXPECT_NE(outcome.out.find("\nnext:   kelpie study fleet.toml"), std::string::npos);
+  testing::write_little_study(folder_ / "my fleet");
+  const Outcome spaces = kelpie(folder_.path(), "study 'my fleet/fleet.toml' --out 'my out'");
+  EXPECT_NE(spaces.out.find(
+                "kelpie study 'my fleet/fleet.toml' --out FOLDER --against 'my out/study.json'"),
+            std::string::npos)
+      << spaces.out << spaces.err;
   EXPECT_EQ(outcome.out.find("Learners, over all vehicles"), std::string::npos);
   ASSERT_EQ(kelpie(folder_.path(), "study fleet.toml --threads 3 --out three").exit_code, 0);
   EXPECT_EQ(without_times("out/study"), without_times("three"));

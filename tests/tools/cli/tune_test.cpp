@@ -45,7 +45,7 @@ class TuneCommand : public ::testing::Test {
 
   int tune(const std::string& more) {
     return run("tune " + (folder_ / "log.csv").string() + " --out " + out().string() +
-               " --split tail --set warmup=30 buffer=60 --candidates 4 " + more);
+               " --split tail --set warmup=30 --set buffer=60 --candidates 4 " + more);
   }
 
   std::string said() const { return content(folder_ / "said"); }
@@ -100,7 +100,7 @@ TEST_F(TuneCommand, TheNextCommandLearnsALogThatItsConfigurationExplains) {
   const std::string log = (folder_ / "named.csv").string();
   const std::string config = (folder_ / "c.toml").string();
   ASSERT_EQ(run("tune " + log + " --config " + config +
-                " --set warmup=30 learner=svr --candidates 4 --search c=1:100:log --out " +
+                " --set warmup=30 --set learner=svr --candidates 4 --search c=1:100:log --out " +
                 out().string()),
             0)
       << said();
@@ -155,6 +155,12 @@ TEST_F(TuneCommand, RefusesWhatContradictsItself) {
   EXPECT_NE(said().find("no configuration 3"), std::string::npos);
   EXPECT_EQ(tune("--candidates 0"), 2);
   EXPECT_FALSE(std::filesystem::exists(out())) << "nothing is begun on a wrong command line";
+}
+
+TEST_F(TuneCommand, ATimeOfOneLogIsNoneOfTwo) {
+  write_log("more.csv", "u,n,udot", 700, 0.5);
+  EXPECT_EQ(tune((folder_ / "more.csv").string() + " --since 10"), 2);
+  EXPECT_NE(said().find("--since: is a time of one log"), std::string::npos) << said();
 }
 
 }  // namespace

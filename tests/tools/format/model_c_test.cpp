@@ -395,5 +395,14 @@ TEST(ModelC, OfTheSimulatedVehicleNeedsNothingButExp) {
   expect_same(model, inputs, true, folder);
 }
 
+TEST(ModelC, NamesOfMembersAreNoCode) {
+  const TemporaryFolder folder;
+  RandomStream random(6, "names");
+  TrainedModel model = random_model(random, {});
+  model.axes[0].function.members[0].name = "*/ int injected; /*";
+  EXPECT_EQ(format::model_c(model, {}).find("*/ int injected"), std::string::npos);
+  expect_same(model, random_inputs(random, model.input_names.size()), false, folder);
+}
+
 }  // namespace
 }  // namespace kelpie::model_c_test
