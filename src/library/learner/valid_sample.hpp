@@ -12,8 +12,8 @@ namespace kelpie {
 
 /// Whether a sample is valid for a learner of `inputs` inputs; else Verdict::invalid.
 inline bool valid_sample(std::span<const double> x, std::size_t inputs, double y, double t) {
-  const auto usable = [](double value) { return std::abs(value) <= kMostValue; };
-  return x.size() == inputs && std::ranges::all_of(x, usable) && usable(y) && std::isfinite(t);
+  return x.size() == inputs && std::ranges::all_of(x, is_usable) && is_usable(y) &&
+         std::isfinite(t);
 }
 
 }  // namespace kelpie

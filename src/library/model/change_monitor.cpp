@@ -82,7 +82,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
 
 ChangeMonitor::Event ChangeMonitor::update(std::span<const double> x, std::span<const double> y,
                                            double t) {
-  if (t - row_s_ < kChange.almost * kChange.step_s) {
+  if (t - row_s_ < kModelTuning.almost * kChange.step_s) {
     return Event::none;
   }
   row_s_ = t;

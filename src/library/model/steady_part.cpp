@@ -117,7 +117,7 @@ void SteadyPart::observe(std::span<const double> x, std::span<const double> y, d
   if (samples_ > 0 && !joins(x, y, t - last_s_)) {
     close_step(learned);
     break_off();
-  } else if (count_ > 0 && t - begin_s_ >= kSteady.almost * kSteady.step_s) {
+  } else if (count_ > 0 && t - begin_s_ >= kModelTuning.almost * kSteady.step_s) {
     close_step(learned);
   }
   ++samples_;

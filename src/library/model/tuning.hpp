@@ -9,6 +9,8 @@ namespace kelpie {
 /// The behavioural constants of the room model, each with unit and source. "By hand": chosen by
 /// hand; no measurement recorded.
 inline constexpr struct ModelTuning {
+  double almost = 0.999;  ///< of a step, which is over: stamps are rounded, by 0.2 µs since 1970
+
   /// Search of an alignment (model/alignment.hpp). Grids are by halves and doubles, since a factor
   /// of two in a time constant costs a few percent of the error; a refinement follows.
   struct Alignment {
@@ -121,10 +123,9 @@ inline constexpr struct ModelTuning {
 
   /// The equations of motion of a vehicle (model/steady_part.hpp).
   struct Steady {
-    double prior = 0.1;     ///< samples per coefficient; by hand
-    double step_s = 0.2;    ///< s, least step: a fifth of the fastest vehicle's time constant
-    double almost = 0.999;  ///< of a step, which is over: stamps are rounded, by 0.2 µs since 1970
-    double jump = 4.0;      ///< usual accelerations of a cut in the log; by hand
+    double prior = 0.1;          ///< samples per coefficient; by hand
+    double step_s = 0.2;         ///< s, least step: a fifth of the fastest vehicle's time constant
+    double jump = 4.0;           ///< usual accelerations of a cut in the log; by hand
     double noisy_jump = 8.0;     ///< standard deviations of an unexplained change, of a cut, too
     double clip = 3.0;           ///< of these deviations: more tells nothing of the noise
     double memory = 1000.0;      ///< samples or steps, mean of errors; by hand
@@ -142,7 +143,6 @@ inline constexpr struct ModelTuning {
   /// ChangeMonitor; docs/method/committee.md, Change: a prototype on training rows of 24 streams.
   struct Change {
     double step_s = 0.24;            ///< s between two rows that count: from 0.2, 0.24
-    double almost = 0.999;           ///< of a step, which is over: as of Steady
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
     double prior = 1.0;              ///< of a term without effect [samples]; by hand
     std::size_t least_errors = 64;   ///< before the usual error is known; by hand

@@ -128,9 +128,8 @@ Diagnosis::State::State(std::size_t inputs, const std::vector<std::size_t>& stat
 }
 
 void Diagnosis::State::update(std::span<const double> x, std::span<const double> y, double t) {
-  const auto usable = [](double value) { return std::abs(value) <= kMostValue; };
-  if (!std::ranges::all_of(x, usable) || !std::ranges::all_of(y, usable) || !std::isfinite(t) ||
-      !moves(x, t)) {
+  if (!std::ranges::all_of(x, is_usable) || !std::ranges::all_of(y, is_usable) ||
+      !std::isfinite(t) || !moves(x, t)) {
     return;
   }
   monitor_.terms().evaluate(x, phi_);
