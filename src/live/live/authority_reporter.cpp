@@ -9,13 +9,9 @@
 #include <utility>
 
 #include "kelpie/core/error.hpp"
+#include "live/tuning.hpp"
 
 namespace kelpie::live {
-namespace {
-
-constexpr double kNews = 0.05;  // of the nominal range; docs/howto/diagnosis.md
-
-}  // namespace
 
 AuthorityReporter::AuthorityReporter(const StreamPlan& plan)
     : plan_(&plan),
@@ -59,8 +55,8 @@ void AuthorityReporter::update(const Diagnosis* diagnosis, const Alignment& alig
   bool is_less = false;
   for (std::size_t i = 0; i < authority.axes().size(); ++i) {
     const double left = authority.axes()[i].left();
-    is_news = is_news || std::abs(left - told_[i]) >= kNews;
-    is_less = is_less || std::abs(left - 1.0) >= kNews;
+    is_news = is_news || std::abs(left - told_[i]) >= kTuning.authority_news;
+    is_less = is_less || std::abs(left - 1.0) >= kTuning.authority_news;
     if (i < health.axes.size()) {
       health.axes[i].authority = left;
     }

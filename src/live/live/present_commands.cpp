@@ -6,18 +6,18 @@
 #include <limits>
 #include <utility>
 
+#include "live/tuning.hpp"
+
 namespace kelpie::live {
 namespace {
 
-// Messages come far more often than rows, and the commands that a delay keeps are for few.
-constexpr double kStepsPerRow = 4.0;
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
 PresentCommands::PresentCommands(std::vector<std::string> inputs, double rate_hz, double gap_s)
     : inputs_(std::move(inputs)),
-      step_s_(1.0 / (kStepsPerRow * rate_hz)),
+      step_s_(1.0 / (kTuning.command_steps_per_row * rate_hz)),
       gap_s_(gap_s),
       shifts_s_(inputs_.size()),
       newest_s_(kNever) {}

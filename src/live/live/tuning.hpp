@@ -48,7 +48,11 @@ inline constexpr struct Tuning {
   double forgotten_s = 300.0;              ///< of rows that go at a time, the oldest
   double between_identifications_s = 5.0;  ///< a fit of half an hour takes 0.3 s at 20 Hz
 
+  double command_steps_per_row = 4.0;  ///< at most, of an actuator: messages come far more often
+                                       ///< than rows, and a delay keeps few commands
+
   // Reports
+  double authority_news = 0.05;  ///< of the nominal range; docs/howto/diagnosis.md
   double least_pause_s = 0.1;    ///< between checkpoints or reports of status; reference/limits.md
   double longest_pause_s = 1e6;  ///< 12 days
   std::chrono::seconds between_reports{1};  ///< [s] between two healths

@@ -15,6 +15,7 @@
 #include "cli/log_options.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
+#include "cli/tuning.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
 #include "fleet/log_pattern.hpp"
@@ -35,7 +36,6 @@ namespace fs = std::filesystem;
 constexpr const char* kHealthJson = "health.json";
 constexpr const char* kHealthHtml = "health.html";
 constexpr const char* kGlideEnding = "_glide.csv";
-constexpr double kUnixTime = 1e8;  // [s]: a time stamp later than this counts from 1970
 
 struct HealthArguments : PlanOptions {
   std::vector<std::string> logs;
@@ -148,8 +148,8 @@ struct Reader {
 template <typename Log>
 bool set_days(std::vector<Log>& logs, const std::vector<Mission>& missions,
               const std::vector<std::pair<double, double>>& times_s, bool are_given) {
-  const bool in_stamps =
-      std::ranges::all_of(times_s, [](const auto& times) { return times.first > kUnixTime; });
+  const bool in_stamps = std::ranges::all_of(
+      times_s, [](const auto& times) { return times.first > kTuning.unix_time_s; });
   const bool is_dated = in_stamps || std::ranges::all_of(missions, [](const Mission& mission) {
                           return std::isfinite(mission.day);
                         });

@@ -15,6 +15,7 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/six_axis_log.hpp"
+#include "cli/tuning.hpp"
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
 #include "format/certificate_json.hpp"
@@ -34,8 +35,6 @@ constexpr const char* kYaml = "parameters.yaml";
 constexpr const char* kPage = "identify.html";
 constexpr const char* kCertificate = "certificate.json";
 constexpr const char* kOwn = "kelpie";
-constexpr double kLeastMass = 1e-6;  // [kg]
-constexpr double kMostScale = 1e9;   // [kg]
 
 using Base = std::optional<vehicle::VehicleParameters>;
 
@@ -291,11 +290,11 @@ void add_identify(CLI::App& app) {
   add_identification_options(*command, *options);
   add_split_option(*command, options->split, "held-out rows, which judge (see `learn`)");
   command->add_option("--mass", options->mass_kg, "of the vehicle with the water in it [kg]")
-      ->check(within(kLeastMass, kMostScale));
+      ->check(within(kTuning.lightest_kg, kTuning.heaviest_kg));
   command
       ->add_option("--surge-added-mass", options->surge_added_mass_kg,
                    "gives the scale together with the mass [kg]; else assumed, 0.2 of it")
-      ->check(within(kLeastMass, kMostScale))
+      ->check(within(kTuning.lightest_kg, kTuning.heaviest_kg))
       ->excludes(command->get_option("--thrust"));
   add_file(
       command, "--vehicle", options->six.vehicle,

@@ -16,6 +16,7 @@
 #include "cli/log_options.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
+#include "cli/tuning.hpp"
 #include "format/learned_logs.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
@@ -254,10 +255,9 @@ void print_score(const std::string& name, const std::vector<double>& truth,
 
 // Another vehicle, or another unit: a model knows nothing of what lies far outside of what it saw.
 void tell_far_inputs(const TrainedModel& model, const SeenRows& seen, const std::string& source) {
-  constexpr double kMargin = 0.5;  // of the range seen; by hand
   const std::vector<Extremes>& known = model.axes.front().steady.seen;
   for (std::size_t k = 0; k < known.size(); ++k) {
-    const double margin = kMargin * (known[k].high - known[k].low);
+    const double margin = kTuning.far_margin * (known[k].high - known[k].low);
     std::size_t outside = 0;
     for (std::size_t row = 0; row < seen.data.rows(); ++row) {
       const double value = seen.data.input(row)[k];

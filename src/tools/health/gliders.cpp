@@ -21,8 +21,6 @@
 namespace kelpie::health {
 namespace {
 
-constexpr double kSurfaceQuantile = 0.1;
-
 constexpr std::array<std::pair<const char*, std::string GliderColumns::*>, 10> kNames{
     {{"time", &GliderColumns::time},
      {"pitch", &GliderColumns::pitch},
@@ -104,7 +102,7 @@ GliderRows rows_of(const log::Table& table, const GliderColumns& columns) {
                      "fewer than two rows have pitch, ballast and depth");
   }
   std::vector<double> depths = found.glide.depth_m;
-  found.glide.surface_m = quantile(depths, kSurfaceQuantile);
+  found.glide.surface_m = quantile(depths, kTuning.surface_quantile);
   return found;
 }
 

@@ -25,8 +25,9 @@ inline constexpr struct Tuning {
   double bias_rows = 10.0;  ///< whose errors correct a glider's speeds on line
 
   // Dives.
-  double dive_share = 0.2;     ///< of the greatest depth: a dive goes deeper
-  double surface_share = 0.1;  ///< of the greatest depth: between dives
+  double dive_share = 0.2;        ///< of the greatest depth: a dive goes deeper
+  double surface_share = 0.1;     ///< of the greatest depth: between dives
+  double surface_quantile = 0.1;  ///< of the depths of a log: the depth of the surface
 } kTuning;
 
 }  // namespace kelpie::health

@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "motion/weak_form.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
-
-constexpr double kLongestStepS = 0.05;  // of the integration on six axes
-constexpr double kRowsPerWindow = 8.0;  // of a drive on six axes, at least
 
 void advance_in_plane(const PlanarVehicle& vehicle, std::span<const double> speeds, double dt,
                       DriveMotion& motion) {
@@ -73,7 +71,7 @@ struct SixAxisStep {
 
   void operator()(std::span<const double> commands, double dt_s, DriveMotion& motion) const {
     motion.rotors.resize(commands.size(), 0.0);
-    const double parts = std::max(1.0, std::ceil(dt_s / kLongestStepS - 1e-9));
+    const double parts = std::max(1.0, std::ceil(dt_s / kTuning.plan.longest_step_s - 1e-9));
     for (int part = 0; part < static_cast<int>(parts); ++part) {
       advance(commands, dt_s / parts, motion);
     }
@@ -162,7 +160,7 @@ WeakRows DrivableSixAxisVehicle::windows(const SixAxisRows& drive) const {
 }
 
 double DrivableSixAxisVehicle::row_s() const {
-  return std::min(0.1, expected_.now().window_s / kRowsPerWindow);
+  return std::min(0.1, expected_.now().window_s / kTuning.plan.rows_per_window);
 }
 
 }  // namespace kelpie::study

@@ -18,17 +18,12 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "motion/tuning.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
 
-constexpr int kSubsteps = 5;            // of the integration in a step of commands
-constexpr std::size_t kDraws = 12;      // vehicles besides the estimate
-constexpr double kUnknownShare = 0.3;   // of a parameter that is not told
-constexpr double kCoastS = 6.0;         // after a drive, thrusters off
-constexpr const char* kLoad = "load";   // a change of all inertias
-constexpr double kNarrower = 0.9;       // bounds of depth and tilt: delays, peaks between steps
-constexpr double kMostTurnsPerS = 1.0;  // of a plausible vehicle
+constexpr const char* kLoad = "load";  // a change of all inertias
 
 // What a parameter is, by its name.
 enum class ParameterKind : std::uint8_t {
@@ -72,7 +67,7 @@ Eigen::MatrixXd root_of_errors(const ParameterFit& fit) {
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const FittedParameter& parameter = fit.parameters[i];
     const auto place = static_cast<Eigen::Index>(i);
-    const double most = kUnknownShare * std::abs(parameter.value);
+    const double most = kTuning.plan.unknown_share * std::abs(parameter.value);
     if (!is_told(parameter) && parameter.error > most) {
       covariance.row(place) *= most / parameter.error;
       covariance.col(place) *= most / parameter.error;
@@ -154,7 +149,7 @@ class DriveRecord {
     const auto parts =
         std::max(1, static_cast<int>(std::lround(kManoeuvreStepS / vehicle_.row_s())));
     const double dt = kManoeuvreStepS / parts;
-    const int substeps = std::max(1, kSubsteps / parts);
+    const int substeps = std::max(1, kTuning.plan.substeps / parts);
     for (int row = 0; row < parts; ++row) {
       rows_.times_s.push_back(time_s_);
       rows_.velocities.insert(rows_.velocities.end(), motion_.velocity.begin(),
@@ -296,9 +291,9 @@ bool DriveExtent::within(const DriveBounds& bounds) const {
 
 PossibleVehicles::PossibleVehicles(const DrivableVehicle& vehicle, const DriveBounds& bounds,
                                    const DriveMotion& start)
-    : bounds_(bounds), motions_(1 + kDraws, start) {
-  bounds_.depth_m *= kNarrower;
-  bounds_.tilt_rad *= kNarrower;
+    : bounds_(bounds), motions_(1 + kTuning.plan.draws, start) {
+  bounds_.depth_m *= kTuning.plan.narrower;
+  bounds_.tilt_rad *= kTuning.plan.narrower;
   const ParameterFit& fit = vehicle.expected().now();
   vehicles_.push_back(vehicle.vehicle_of(fit));
   const Eigen::MatrixXd root = root_of_errors(fit);
@@ -311,11 +306,13 @@ PossibleVehicles::PossibleVehicles(const DrivableVehicle& vehicle, const DriveBo
 bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<DriveMotion>& motions,
                                DriveExtent& extent) const {
   const auto keeps = [&](std::size_t i, DriveMotion& motion, const HeldSpeeds& part) {
-    const auto steps = static_cast<int>(std::lround(kSubsteps * part.duration_s / kManoeuvreStepS));
+    const auto steps =
+        static_cast<int>(std::lround(kTuning.plan.substeps * part.duration_s / kManoeuvreStepS));
     for (int step = 0; step < steps; ++step) {
-      vehicles_[i](part.speeds, kManoeuvreStepS / kSubsteps, motion);
+      vehicles_[i](part.speeds, kManoeuvreStepS / kTuning.plan.substeps, motion);
       extent.include(motion);
-      if (!extent.within(bounds_) || !(std::abs(motion.velocity[5]) < kFullTurn * kMostTurnsPerS)) {
+      if (!extent.within(bounds_) ||
+          !(std::abs(motion.velocity[5]) < kFullTurn * kTuning.plan.most_turns_per_s)) {
         return false;
       }
     }
@@ -329,7 +326,7 @@ bool PossibleVehicles::advance(const Manoeuvre& manoeuvre, std::vector<DriveMoti
     }
     DriveMotion coasting = motions[i];
     const std::vector<double> off(manoeuvre.parts.front().speeds.size(), 0.0);
-    if (!keeps(i, coasting, {kCoastS, off})) {
+    if (!keeps(i, coasting, {kTuning.plan.coast_s, off})) {
       return false;
     }
   }

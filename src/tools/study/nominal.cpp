@@ -15,6 +15,7 @@
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "study/six_axes.hpp"
+#include "study/tuning.hpp"
 #include "svr/function_mix.hpp"
 #include "vehicle/dynamics.hpp"
 
@@ -22,7 +23,6 @@ namespace kelpie::study {
 namespace {
 
 constexpr const char* kConstant = "1";
-constexpr int kPlaces = 4000;       // many for 122 terms, and no time to speak of
 constexpr double kNoPrior = 1e-12;  // the vehicle's equation has no noise
 
 // The body axis of each target's velocity; none for a target of another kind.
@@ -155,7 +155,7 @@ Nominal nominal_of(const vehicle::VehicleParameters& vehicle, const log::Dataset
   std::vector<double> x(data.input_names.size());
   std::vector<double> phi(terms.size() + 1, 1.0);
   std::vector<double> y(axes.size());
-  for (int place = 0; place < kPlaces; ++place) {
+  for (int place = 0; place < kTuning.nominal_places; ++place) {
     const std::size_t attitude_row = random.below(data.rows());
     for (std::size_t i = 0; i < x.size(); ++i) {
       const std::size_t row =

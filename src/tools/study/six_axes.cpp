@@ -14,6 +14,7 @@
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "study/metrics.hpp"
+#include "study/tuning.hpp"
 #include "vehicle/dynamics.hpp"
 
 namespace kelpie::study {
@@ -51,12 +52,12 @@ std::string missing_velocity(const log::Dataset& data, const std::vector<std::si
 // Of another unit, as mV, a power of the voltage would be numbers without a meaning.
 void require_volts(const log::Dataset& data, const SixAxisColumns& columns, double nominal_v,
                    std::vector<double> volts) {
-  constexpr double kMostRatio = 3.0;  // of a supply in use to the voltage of the data sheet
   if (volts.empty() || nominal_v <= 0.0) {
     return;
   }
   const double usual = quantile(volts, 0.5);
-  if (!(usual < kMostRatio * nominal_v) || usual < nominal_v / kMostRatio) {
+  if (!(usual < kTuning.most_supply_ratio * nominal_v) ||
+      usual < nominal_v / kTuning.most_supply_ratio) {
     throw InputError(
         "--volts", fmt::format("'{}' is usually {:.4g}, the vehicle file's voltage is {:.4g} V; a "
                                "column in mV becomes V by voltage = 0.001 under [log.scale] of "

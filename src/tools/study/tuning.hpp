@@ -58,6 +58,21 @@ inline constexpr struct Tuning {
     double still_m = 0.1;  ///< shorter outages have no relative position error
     double example_every_s = 10.0;  ///< between starts considered for the example
   } open_loop;
+
+  /// Vehicles as fitted, driven through manoeuvres not yet driven; docs/howto/identify.md.
+  struct DrivePlan {
+    int substeps = 5;               ///< of the integration in a step of commands
+    std::size_t draws = 12;         ///< vehicles besides the estimate
+    double unknown_share = 0.3;     ///< most error / value, of a parameter that is not told
+    double coast_s = 6.0;           ///< after a drive, thrusters off
+    double narrower = 0.9;          ///< bounds of depth and tilt: delays, peaks between steps
+    double most_turns_per_s = 1.0;  ///< of a plausible vehicle
+    double longest_step_s = 0.05;   ///< of the integration on six axes
+    double rows_per_window = 8.0;   ///< of a drive on six axes, at least
+  } plan;
+
+  int nominal_places = 4000;       ///< in the range of the log: many for 122 terms, and cheap
+  double most_supply_ratio = 3.0;  ///< of a supply in use to the voltage of the data sheet
 } kTuning;
 
 }  // namespace kelpie::study
