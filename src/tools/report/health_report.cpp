@@ -141,7 +141,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
   const health::Quantity& quantity = card.table.quantities[change.quantity];
   const health::Series series = health::series_of(card.table, change.quantity);
   const double scale = quantity.unit.empty() ? 100.0 : 1.0;
-  const double first = card.table.episodes.front().day;
+  const double first = card.is_dated ? card.table.episodes.front().day : 0.0;
   std::vector<chart::Point> points;
   std::vector<chart::Point> course;
   std::vector<double> halves;
@@ -152,7 +152,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
     course.push_back({x, scale * course_at(change.course, series.days[i])});
   }
   chart::Figure figure(
-      {card.is_dated ? "days since " + health::day_text(card, first) : "days", {}},
+      {card.is_dated ? "days since " + health::day_text(card, first) : "day", {}},
       {fmt::format("{} [{}]", quantity.name, quantity.unit.empty() ? "%" : quantity.unit), {}},
       quantity.name + " from episode to episode");
   figure.band(points, halves, 0, "90 % interval");
@@ -232,18 +232,19 @@ std::string health_tables(const std::vector<HealthCard>& cards) {
 }
 
 std::string health_html(const std::vector<HealthCard>& cards) {
+  const std::string headline = health_headline(cards);
   std::string opening =
       chart::paragraph(
           "over", "Health of " + (cards.size() == 1 ? cards.front().vehicle
                                                     : fmt::format("{} vehicles", cards.size()))) +
-      chart::heading(1, health_headline(cards));
+      chart::heading(1, headline);
   std::vector<chart::Section> sections;
   std::vector<chart::Section> values;
   for (const HealthCard& card : cards) {
     opening += chart::paragraph("", span_text(card) + ".");
     for (const Change* change : found_changes(card)) {
-      opening += chart::paragraph(
-          "", health::change_text(card, *change) + baseline_words(card, *change) + ".");
+      const std::string news = health::change_text(card, *change) + baseline_words(card, *change);
+      opening += news + "." == headline ? "" : chart::paragraph("", news + ".");
     }
     for (const std::string& remark : card.table.remarks) {
       opening += chart::paragraph("note", remark + ".");

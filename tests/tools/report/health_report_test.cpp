@@ -29,5 +29,12 @@ TEST(HealthReport, AnUndecidedChangeIsDrawnNeitherAsADriftNorAsAStep) {
   EXPECT_EQ(page_with(health::CourseKind::undecided).find("course"), std::string::npos);
 }
 
+TEST(HealthReport, TheHeadlineIsNotRepeated) {
+  const std::string page = page_with(health::CourseKind::drift);
+  const std::size_t end = page.find("</h1>");
+  const std::string news = page.substr(page.rfind('>', end) + 1, end - page.rfind('>', end) - 1);
+  EXPECT_EQ(page.substr(end, page.find("<nav") - end).find(news), std::string::npos) << news;
+}
+
 }  // namespace
 }  // namespace kelpie::health_report_test
