@@ -230,6 +230,7 @@ def test_the_headline_comes_first_and_units_are_as_people_write_them(pages):
     page.wait_until_drawn()
     assert page.run("return document.querySelector('h1').textContent").startswith("th2 gives 60")
     assert page.run("return [...kelpie.figures][0].description.y.label") == "udot in m/s²"
+    assert "m/s from ahead" in page.run("return document.body.textContent")
     marks = page.run("return [...kelpie.figures][0].description.marks.map(({ x }) => x)")
     assert all(abs(mark - DAMAGE_S) < 1 for mark in marks), "changes stand where they happened"
     page.run("[...kelpie.figures][0].frame.scrollIntoView()")
