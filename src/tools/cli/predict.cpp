@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "chart/wording.hpp"
 #include "cli/commands.hpp"
 #include "cli/log_options.hpp"
 #include "cli/options.hpp"
@@ -237,8 +236,7 @@ void print_score(const std::string& name, const std::vector<double>& truth,
     for (std::size_t row = 0; row < truth.size(); ++row) {
       all.add(truth[row], predicted[row]);
     }
-    say("{}: R² {} over {} of {} rows\n", name, chart::decimal(all.r_squared()),
-        chart::grouped(all.rows()), chart::grouped(truth.size()));
+    say("{}: R² {:.3f} over {} of {} rows\n", name, all.r_squared(), all.rows(), truth.size());
     return;
   }
   std::array<Score, 2> scores;  // learned, held out
@@ -247,11 +245,11 @@ void print_score(const std::string& name, const std::vector<double>& truth,
     scores[known.held_out[i] ? 1 : 0].add(truth[row], predicted[row]);
   }
   if (scores[1].rows() > 0) {
-    say("{}: R² {} over {} rows held out when it learned\n", name,
-        chart::decimal(scores[1].r_squared()), chart::grouped(scores[1].rows()));
+    say("{}: R² {:.3f} over {} rows held out when it learned\n", name, scores[1].r_squared(),
+        scores[1].rows());
   }
-  say("{}: R² {} over {} rows that it learned\n", name, chart::decimal(scores[0].r_squared()),
-      chart::grouped(scores[0].rows()));
+  say("{}: R² {:.3f} over {} rows that it learned\n", name, scores[0].r_squared(),
+      scores[0].rows());
 }
 
 // Another vehicle, or another unit: a model knows nothing of what lies far outside of what it saw.

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "chart/wording.hpp"
-#include "core/text.hpp"
 #include "report/tuning.hpp"
 #include "study/diagnosis.hpp"
 
