@@ -43,8 +43,8 @@ def without_frameworks(app):
 
 
 def self_contained(app, exception):
-    """Debian's Furo loads a style sheet of the system, and a script as a module, which browsers load
-    from servers alone: neither works from a folder."""
+    """Debian's Furo loads a style sheet of the system, and a script as a module, which browsers
+    load from servers alone: neither works from a folder."""
     static = Path(app.outdir) / "_static"
     begin = "@import url(/javascript/"
     for sheet in (static / "styles").glob("*.css"):

@@ -185,7 +185,8 @@ def test_after_a_replay_the_figures_stay_and_the_end_is_said(mission, tmp_path):
         assert page.run("return document.getElementById('alarm').hidden"), "silence is no alarm now"
         signals = page.run("return document.querySelector('#signals tbody').textContent")
         assert "well" in signals and "is silent" not in signals
-        good = page.run("return [...document.querySelectorAll('#good td')].map((td) => td.textContent)")
+        good = page.run("return [...document.querySelectorAll('#good td')]"
+                        ".map((td) => td.textContent)")
         assert {len(text.split(".")[1]) for text in good if "." in text and "%" not in text} == {3}
         assert page.console() == []
 
