@@ -94,13 +94,17 @@ def draw_control(data):
 def draw_reckoning(data):
     figure, axes = grid(len(data["logs"]), columns=min(2, max(1, len(data["logs"]))))
     for place, log in zip(axes, data["logs"]):
-        for navigator in log["navigators"]:
+        for navigator, marker in zip(log["navigators"], "osD^vx*"):
             outages = [o for o in navigator["outages"] if o["median"] is not None]
             place.plot([o["seconds"] for o in outages], [o["median"] for o in outages],
-                       marker="o", label=navigator["name"])
+                       marker=marker, label=navigator["name"])
         simulated = " (simulation)" if log["simulated"] else ""
-        finish(place, f"{Path(log['source']).name}{simulated}, held out: {log['split']}",
+        source = log["source"] if simulated else Path(log["source"]).name  # "0.1 m/s" is no path
+        finish(place, f"{source}{simulated}\nheld out: {log['split']}",
                "length of the outage [s]", "position error / distance, median", "xy")
+        seconds = sorted({o["seconds"] for n in log["navigators"] for o in n["outages"]})
+        place.set_xticks(seconds, [f"{one:g}" for one in seconds])
+        place.set_xticks([], minor=True)
     return figure
 
 

@@ -14,7 +14,9 @@ from numpy.typing import ArrayLike
 
 _COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9")
 _MARKERS = "osD^vPX"
+_DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)))
 _LEAST_R2 = -0.2  # the axis ends here, as on the page of `kelpie compare`
+_MOST_R2 = 1.05  # 1 is perfect; the margin of values far below would reach far above
 
 
 def predictions(model: Any, y: ArrayLike, t: Optional[ArrayLike] = None, *,
@@ -55,9 +57,10 @@ def learning(result: Mapping[str, Any], *, target: Union[int, str] = 0, axes: An
         validation = next(axis for axis in model["axes"] if axis["name"] == name)["validation"]
         r2 = np.array([np.nan if value is None else value for value in validation["r2"]])
         axes.plot(validation["samples"], r2, color=_COLORS[place % len(_COLORS)],
-                  ls="-" if place == 0 else "--", label=model["name"])
+                  ls=_DASHES[place % len(_DASHES)], label=_label(model, r2))
     axes.set(xlabel="samples learned", ylabel=f"R² of {name} on held-out rows")
-    axes.set_ylim(bottom=max(_LEAST_R2, axes.get_ylim()[0]))
+    low, high = axes.get_ylim()
+    axes.set_ylim(max(_LEAST_R2, low), min(high, _MOST_R2))
     axes.legend(frameon=False)
     return axes
 
@@ -70,10 +73,11 @@ def comparison(result: Mapping[str, Any], *, axes: Any = None) -> Any:
         r2 = [np.nan if axis["r2"]["final"] is None else axis["r2"]["final"]
               for axis in model["axes"]]
         axes.plot(r2, np.arange(len(names)), ls="", marker=_MARKERS[place % len(_MARKERS)],
-                  color=_COLORS[place % len(_COLORS)], label=model["name"])
+                  color=_COLORS[place % len(_COLORS)], label=_label(model, r2))
     axes.set(yticks=np.arange(len(names)), yticklabels=names, xlabel="R² on held-out rows",
              ylim=(len(names) - 0.5, -0.5))
-    axes.set_xlim(left=max(_LEAST_R2, axes.get_xlim()[0]))
+    low, high = axes.get_xlim()
+    axes.set_xlim(max(_LEAST_R2, low), min(high, _MOST_R2))
     axes.legend(frameon=False)
     return axes
 
@@ -89,3 +93,8 @@ def _axes(axes: Any) -> Any:
         return axes
     from matplotlib import pyplot
     return pyplot.subplots()[1]
+
+
+def _label(model: Mapping[str, Any], r2: ArrayLike) -> str:
+    """No entry in the legend where nothing is drawn, as of the last value on held-out rows."""
+    return str(model["name"]) if np.isfinite(r2).any() else "_"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks a site in a folder: every link and anchor, clicks from the start page, its size.
+"""Checks a site in a folder: every link and anchor, clicks from the start page, its size, and that
+style sheets and scripts need no server.
 
 Pages of Doxygen are entered, but their own links are Doxygen's. Usage: check.py FOLDER
 """
@@ -69,6 +70,10 @@ def main(folder):
                 faults.append(f"{name}: {link}: no such anchor")
         if near.get(file, MOST_CLICKS + 1) > MOST_CLICKS and name.name not in BY_SEARCH:
             faults.append(f"{name}: more than {MOST_CLICKS} clicks from the start page")
+    for file in (root / "_static").rglob("*"):
+        text = file.read_text(encoding="utf-8") if file.suffix in (".css", ".js") else ""
+        if text.startswith(("@import url(/", "import ")):
+            faults.append(f"{file.relative_to(root)}: works from a server alone")
     start = root / "index.html"
     loaded = {target(start, link)[0] for link in pages[start].loads if target(start, link)}
     size = sum(file.stat().st_size for file in {start, *loaded}

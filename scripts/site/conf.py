@@ -3,6 +3,7 @@
 
 import os
 import re
+from pathlib import Path
 
 project = "kelpie"
 copyright = "the kelpie developers"
@@ -41,6 +42,26 @@ def without_frameworks(app):
     scripts[:] = [script for script in scripts if not any(name in script for name in unused)]
 
 
+def self_contained(app, exception):
+    """Debian's Furo loads a style sheet of the system, and a script as a module, which browsers
+    load from servers alone: neither works from a folder."""
+    static = Path(app.outdir) / "_static"
+    begin = "@import url(/javascript/"
+    for sheet in (static / "styles").glob("*.css"):
+        text = sheet.read_text(encoding="utf-8")
+        if text.startswith(begin):
+            name, rest = text.removeprefix(begin).split(");", 1)
+            other = Path("/usr/share/javascript", name).read_text(encoding="utf-8")
+            sheet.write_text(other + rest, encoding="utf-8")
+    for script in (static / "scripts").glob("*.js"):
+        found = re.match(r'import \w+ from "\./(.+)";', script.read_text(encoding="utf-8"))
+        if found:
+            text = script.read_text(encoding="utf-8")[found.end():]
+            module = (script.parent / found[1]).read_text(encoding="utf-8")
+            script.write_text(module + text, encoding="utf-8")
+
+
 def setup(app):
     app.connect("autodoc-process-docstring", plain_docstring, priority=1)
     app.connect("builder-inited", without_frameworks, priority=900)
+    app.connect("build-finished", self_contained, priority=900)

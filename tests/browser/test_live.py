@@ -159,6 +159,20 @@ def test_the_first_screen_holds_source_quality_and_alarms(running):
     page.wait("document.getElementById('alarm').hidden", 60)
 
 
+def test_an_alarm_of_several_axes_is_one_line_with_their_names(running):
+    page = open_page(running.address)
+    wait_for_model(page)
+    lines = page.run("""
+        const changed = { level: "warn", key: "changes", text: "the vehicle has changed" };
+        live.show({ ...live.health(), alerts: [
+          ...["udot", "rdot"].map((subject) => ({ ...changed, subject })),
+          { level: "warn", key: "is_silent", subject: "n", text: "n is silent" },
+          { level: "warn", key: "vehicle", subject: "", text: "the vehicle has changed: th2" }] });
+        return [...document.querySelectorAll("#alarm p")].map((p) => p.textContent);""")
+    assert lines == ["⚠ the vehicle has changed: th2", "⚠ the vehicle has changed: udot, rdot",
+                     "⚠ n is silent"]
+
+
 def test_after_a_replay_the_figures_stay_and_the_end_is_said(mission, tmp_path):
     with live_run(tmp_path, mission, "60") as run:
         page = open_page(run.address)
@@ -169,6 +183,11 @@ def test_after_a_replay_the_figures_stay_and_the_end_is_said(mission, tmp_path):
         assert page.run("return live.figures().every(({ figure }) => figure.plot.width > 0)")
         assert page.run("return document.getElementById('save').disabled")
         assert page.run("return document.getElementById('alarm').hidden"), "silence is no alarm now"
+        signals = page.run("return document.querySelector('#signals tbody').textContent")
+        assert "well" in signals and "is silent" not in signals
+        good = page.run("return [...document.querySelectorAll('#good td')]"
+                        ".map((td) => td.textContent)")
+        assert {len(text.split(".")[1]) for text in good if "." in text and "%" not in text} == {3}
         assert page.console() == []
 
 

@@ -230,6 +230,7 @@ def test_the_headline_comes_first_and_units_are_as_people_write_them(pages):
     page.wait_until_drawn()
     assert page.run("return document.querySelector('h1').textContent").startswith("th2 gives 60")
     assert page.run("return [...kelpie.figures][0].description.y.label") == "udot in m/s²"
+    assert "m/s from ahead" in page.run("return document.body.textContent")
     marks = page.run("return [...kelpie.figures][0].description.marks.map(({ x }) => x)")
     assert all(abs(mark - DAMAGE_S) < 1 for mark in marks), "changes stand where they happened"
     page.run("[...kelpie.figures][0].frame.scrollIntoView()")
@@ -256,6 +257,43 @@ def test_the_errors_stand_below_the_curves(learned):
         return row(error, "measured less predicted").filter((e, i) =>
             e !== null && Math.abs(e - (measured[i] - predicted[i])) > 1e-9).length""")
     assert wrong == 0
+
+
+TICKS = """
+document.querySelectorAll("details").forEach((one) => { one.open = true; });
+return new Promise((done) => setTimeout(() => done([...kelpie.figures]
+    .filter(({ description }) => !description.x.names && !description.x.log && !description.y.log)
+    .map(({ plot, description }) => [description.label, ...[0, 1].map((axis) =>
+        plot.axes[axis]._values.filter((text) => text).length)])), 500));
+"""
+
+
+@pytest.mark.parametrize("width", [1300, 400])
+def test_every_figure_has_a_scale_and_data_in_view(pages, width):
+    for name in ("learn", "damaged", "rollout"):
+        page = open_page(pages[name], width)
+        page.wait_until_drawn()
+        ticks = page.run(TICKS)
+        assert len(ticks) >= 3
+        assert [one for one in ticks if min(one[1:]) < 2] == [], name
+
+
+def test_labels_of_marks_close_together_stand_beside_each_other(learned):
+    told = learned.run("""
+        const told = [];
+        const draw = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+          told.push(text);
+          draw.call(this, text, ...place);
+        };
+        new kelpie.Figure(document.body, { label: "", x: { label: "x" }, y: { label: "y" },
+          marks: [0.5, 0.53, 0.531].map((x, i) => ({ x, name: `mark ${i}` })), guides: [],
+          series: [{ kind: "line", name: "a", style: 0, x: 0, y: 1 }] }, [[0, 1], [0, 1]]);
+        return new Promise((done) => setTimeout(() => {
+          CanvasRenderingContext2D.prototype.fillText = draw;
+          done([...new Set(told.filter((text) => text.startsWith("mark")))]);
+        }, 200));""")
+    assert told == ["mark 0", "mark 1"]
 
 
 def test_a_link_opens_the_folded_part_and_its_figures_fill_it(pages):
@@ -354,9 +392,10 @@ def test_dragging_zooms_all_figures_over_time_and_a_double_click_undoes_it(learn
 def test_figures_out_of_sight_follow_when_they_are_scrolled_to(learned):
     learned.run("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     settle(learned)
-    learned.run("[...kelpie.figures][0].showAll([100, 200])")
-    learned.run("[...kelpie.figures].findLast((f) => f.group === 'time').frame.scrollIntoView()")
-    learned.wait("[...kelpie.figures].findLast((f) => f.group === 'time').plot.scales.x.min === 100")
+    learned.run("[...kelpie.figures].find((f) => f.group === 'stream').showAll([100, 200])")
+    last = "[...kelpie.figures].findLast((f) => f.group === 'stream')"
+    learned.run(f"{last}.frame.scrollIntoView()")
+    learned.wait(f"{last}.plot.scales.x.min === 100")
 
 
 def test_the_cursor_tells_the_same_moment_in_all_figures(learned):

@@ -316,6 +316,12 @@ def test_an_entry_that_fails_says_why_and_the_others_go_on(folder, tmp_path, cap
     assert [one["entry"] for one in found["results"] if "failed" in one] == ["Raises", "Dies"]
 
 
+def test_a_number_that_rounds_to_zero_has_no_sign():
+    from kelpie.benchmark._page import columns
+    column = columns()[0]
+    assert column.text(-0.0001) == "0.000" and column.text(-0.0123) == "−0.012"
+
+
 def test_the_page_says_how_sgd_regressor_enters(folder, tmp_path, monkeypatch):
     """The lines of the page, by which a newcomer enters scikit-learn's SGDRegressor."""
     pytest.importorskip("sklearn")

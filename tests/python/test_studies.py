@@ -216,7 +216,13 @@ def test_figures(table, compared):
     assert list(shown["kelpie"]) == kelpie_r2
     axes = kelpie.plot.learning(compared, target="vdot")
     assert len(axes.lines) == len(compared["contenders"])
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "least squares" in names and "last value" not in names, "nothing is drawn of it"
     assert len(kelpie.plot.learning(kelpie.report(table, settings=QUICK)).lines) == 1
+    validation = {"samples": [100, 200, 300], "r2": [-4000.0, 0.9, 0.95]}
+    wild = {"axes": [{"name": "udot", "validation": validation, "r2": {"final": 0.95}}]}
+    low, high = kelpie.plot.learning(wild).get_ylim()
+    assert low == -0.2 and 1.0 <= high < 1.1, "R² ends at 1, whatever lies far below"
     model = kelpie.DynamicsModel(**QUICK).fit(table)
     axes = kelpie.plot.predictions(model, table[TARGETS], table.t, target="vdot")
     measured, predicted = (line.get_ydata() for line in axes.lines)

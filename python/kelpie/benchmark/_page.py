@@ -51,7 +51,8 @@ class Column:
             return "–"
         if self.is_error and value >= self.worst and math.isfinite(self.worst):
             return f"≥ {self.worst:g}"
-        return f"{value:,.{self.digits}f}".replace("-", "−")
+        text = f"{value:,.{self.digits}f}"
+        return text.lstrip("-") if float(text.replace(",", "")) == 0.0 else text.replace("-", "−")
 
 
 def _step(found: dict[str, Any], name: str) -> Optional[int]:

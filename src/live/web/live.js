@@ -14,7 +14,7 @@ const live = (() => {
   let drawn = 0; // when
   let isDue = false;
   let isPaused = false;
-  let alerts = [];
+  let last = null; // health
   const title = document.title;
 
   function made(tag, content, attributes = {}) {
@@ -30,6 +30,13 @@ const live = (() => {
     const short = size >= 1e5 || (size > 0 && size < 1e-3) ? value.toExponential(digits - 1)
       : String(Number(value.toPrecision(digits)));
     return short.replaceAll("-", "−");
+  }
+  // With the zeros at the end: numbers below each other have as many digits.
+  function even(value, digits = 3) {
+    if (value === null || value === undefined) return "–";
+    const size = Math.abs(value);
+    return size === 0 ? "0" : size < 1e-3 || size >= 10 ** digits ? number(value, digits)
+      : value.toPrecision(digits).replace("-", "−");
   }
   const count = (value) => value.toLocaleString("en");
   const fixed = (value, digits) => value === null ? "–" : value.toFixed(digits).replace("-", "−");
@@ -133,8 +140,9 @@ const live = (() => {
   function shown(field, one) {
     const value = Array.isArray(one[field.key]) ? one[field.key][field.place] : one[field.key];
     if (value === null || value === "") return "–";
+    if (field.key === "r2") return Math.abs(value) < 10 ? fixed(value, 3) : number(value);
     return { count, text: (text) => text, flag: (flag) => flag ? "yes" : "no",
-      share: (share) => `${fixed(100 * share, share < 0.1 ? 1 : 0)} %` }[field.kind]?.(value) ?? number(value);
+      share: (share) => `${fixed(100 * share, share < 0.1 ? 1 : 0)} %` }[field.kind]?.(value) ?? (plan.fields.velocities.includes(field) ? even : number)(value);
   }
 
   // A row for each of `list`: name, cells before, a cell per field, cells behind.
@@ -151,15 +159,21 @@ const live = (() => {
   }
 
   function coefficient({ value, error, unit, term }, axis) {
-    return [axis, term, number(value, 4), error === null ? "" : `± ${number(error, 2)}`, unit];
+    return [axis, term, even(value, 4), error === null ? "" : `± ${even(error, 2)}`, unit];
   }
 
   // What an operator has to know first: the vehicle, then what else is wrong.
   function alarm({ alerts }) {
     const place = at("alarm");
-    const lines = [...alerts].sort((a, b) => (b.key === "vehicle") - (a.key === "vehicle"))
-      .filter(({ level, key }) => level !== "ok" && !["ready", "learning_paused"].includes(key))
-      .slice(0, kMostAlarms).map((one) => one.text);
+    const subjects = new Map(); // by text: of some axes the text is the same
+    for (const { text, subject, level, key } of
+      [...alerts].sort((a, b) => (b.key === "vehicle") - (a.key === "vehicle"))) {
+      if (level === "ok" || ["ready", "learning_paused"].includes(key)) continue;
+      if (!subjects.has(text)) subjects.set(text, []);
+      if (subject && !text.includes(subject)) subjects.get(text).push(subject);
+    }
+    const lines = [...subjects].slice(0, kMostAlarms)
+      .map(([text, names]) => names.length > 0 ? `${text}: ${names.join(", ")}` : text);
     const told = lines.join("\n");
     if (place.dataset.told === told) return;
     place.dataset.told = told;
@@ -169,8 +183,14 @@ const live = (() => {
     document.title = lines.length === 0 ? title : `⚠ ${title}`;
   }
 
+  function showSignals(health) {
+    listed(at("signals"), plan.fields.signals.filter(({ kind }) => kind !== "flag"), health.signals,
+      { from: ({ from }) => from, condition: (signal) => condition(signal, health) },
+      { "found since the start": ({ found }) => found || "–" }, "signals");
+  }
+
   function show(health) {
-    alerts = health.alerts;
+    last = health;
     alarm(health);
     isPaused = health.learning_paused;
     at("freeze").textContent = isPaused ? "Resume learning" : "Freeze learning";
@@ -178,13 +198,11 @@ const live = (() => {
       : health.alerts.some(({ key }) => key === "idle_s") ? "⚠ No messages come"
       : health.axes.every((axis) => axis.ready) ? "▶ Learning" : "▶ Learning; too few samples for a model so far",
     `${count(health.learned)} samples learned, ${number(health.t, 6)}\u00a0s`);
-    const { run, axes, signals, thrusters, velocities, parameters } = plan.fields;
+    const { run, axes, thrusters, velocities, parameters } = plan.fields;
     const isGood = ({ key, place }) => (key === "r2" && place < 2) || key === "coverage";
     listed(at("good"), axes.filter(isGood), health.axes);
     listed(at("learners"), axes.filter((field) => !isGood(field)), health.axes);
-    listed(at("signals"), signals.filter(({ kind }) => kind !== "flag"), health.signals,
-      { from: ({ from }) => from, condition: (signal) => condition(signal, health) },
-      { "found since the start": ({ found }) => found || "–" }, "signals");
+    showSignals(health);
     const all = health.axes.flatMap((axis) => axis.coefficients.map((one) => coefficient(one, axis.name)));
     table(at("coefficients"), ["axis", "term", "coefficient", "standard error", "unit"], all, "coefficients");
     table(at("facts"), [], run.map((field) => [field.label, shown(field, health), field.help]), "facts");
@@ -225,7 +243,10 @@ const live = (() => {
     on("health", show);
     on("end", () => {
       events.close();
-      alarm({ alerts: alerts.filter(({ key }) => key === "vehicle") }); // all signals are silent now
+      if (last) { // all signals are silent now
+        alarm({ alerts: last.alerts.filter(({ key }) => key === "vehicle") });
+        showSignals({ ...last, alerts: last.alerts.filter(({ key }) => key !== "is_silent") });
+      }
       say("■ The run has ended", "figures and numbers are those of its end");
       for (const id of ["save", "freeze", "reset"]) at(id).disabled = true;
     });
@@ -251,5 +272,5 @@ const live = (() => {
   at("yes").onclick = () => { at("ask").close(); ask("reset"); };
   listen();
 
-  return { figures: () => figures, columns: () => columns };
+  return { figures: () => figures, columns: () => columns, health: () => last, show };
 })();

@@ -238,7 +238,9 @@ const kelpie = (() => {
         grid: { stroke: () => style("--grid"), width: 1 },
         ticks: { stroke: () => style("--grid"), width: 1, size: 5 },
         size: isX ? 28 : (u, texts) => 16 + 6.6 * Math.max(5, ...(texts ?? []).map((t) => t.length)),
-        space: isX ? (of.names ? 10 : 75) : 30,
+        // A phone's figure, or a low one, has two ticks at least: one tells no scale.
+        space: isX ? (u, index, low, high, room) => of.names ? 10 : room > 400 ? 75 : 55
+          : this.description.height < 200 ? 20 : 30,
         ...(of.names ? { splits: () => of.names.map((_, i) => i), values: () => of.names }
           : of.log ? { splits: (u, axis, low, high) => logTicks(low, high), filter: (u, splits) => splits, values: (u, splits) =>
               logTickTexts(splits, (v) => u.valToPos(v, isX ? "x" : "y"), isX ? 50 : 20) }
@@ -279,7 +281,7 @@ const kelpie = (() => {
     size() {
       const isPrinted = document.documentElement.classList.contains("printing");
       const room = !isPrinted ? this.parent.clientWidth : this.parent.closest(".panels") ? 325 : 680;
-      const width = Math.max(260, room);
+      const width = Math.max(260, this.description.square ? Math.min(room, 420) : room);
       return { width, height: this.description.square ? Math.min(width, 380)
         : Math.min(this.description.height ?? 270, Math.max(200, 0.7 * width)) };
     }
@@ -357,8 +359,9 @@ const kelpie = (() => {
         if (at < left || at > left + width) continue;
         context.stroke(new Path2D(`M${at} ${top}V${top + height}`));
         const half = context.measureText(mark.name).width / 2;
-        const middle = Math.min(Math.max(at, left + half), left + width - half);
-        if (middle - half < free) continue; // labels never overlap; all marks are in the table
+        // Labels never overlap: one beside another moves aside as long as it reaches its mark.
+        const middle = Math.min(Math.max(at, free + half), left + width - half);
+        if (middle - half < free || middle - half > at + 4 * ratio) continue;
         context.textAlign = "center";
         context.fillText(mark.name, middle, top - 8 * ratio);
         free = middle + half + 8 * ratio;
@@ -438,7 +441,7 @@ const kelpie = (() => {
           context.fillRect(6, 4, 44, 20);
         }
         context.lineWidth = 1.4;
-        if (one.small) context.fillRect(26, 12, 4, 4);
+        if (one.small) context.fillRect(24, 10, 8, 8);
         else if (one.kind === "line" || one.kind === "points") drawShape(context, one.style, 28, 14, 2);
       }
     }

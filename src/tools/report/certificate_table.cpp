@@ -34,7 +34,7 @@ std::string r2_text(const study::DrivenHorizon& horizon, const std::array<bool, 
 }
 
 std::string step_text(double step_s) {
-  return chart::significant(1e3 * step_s);
+  return fmt::format("{:.4g}", 1e3 * step_s);
 }
 
 std::string bound_text(const vehicle::StepLimit& limit) {

@@ -112,7 +112,9 @@ chart::TextTable ranked_view(const study::Comparison& comparison) {
     row.push_back(contest == ranked.front().contest ? "–"
                                                     : chart::decimal(ranked.front().mean - mean));
   }
-  table.notes = {"In the mean, an axis worse than the mean of its rows counts 0."};
+  table.notes = {
+      "R² on held-out rows, at the end. In the mean, an axis worse than the mean of its rows "
+      "counts 0."};
   return table;
 }
 

@@ -8,13 +8,20 @@
 #include <vector>
 
 #include "chart/wording.hpp"
+#include "report/tuning.hpp"
 #include "study/diagnosis.hpp"
 
 namespace kelpie::report {
 namespace {
 
 std::string per_cent(double share) {
-  return std::isfinite(share) ? fmt::format("{:.0f} %", 100.0 * share) : "–";
+  return std::isfinite(share) ? chart::grouped(std::lround(100.0 * share)) + " %" : "–";
+}
+
+// Whether the last minute tells the share: a share that was never estimated has no width.
+bool is_told(const Cause& share) {
+  const double width = share.upper - share.lower;
+  return width > 0.0 && width <= kTuning.told_thrust;
 }
 
 }  // namespace
@@ -36,18 +43,18 @@ chart::TextTable change_table(const study::StreamResult& result) {
                           fmt::format("{:.0f} s", finding.found_s - finding.since_s),
                           finding_text(finding, {result.input_names, targets}),
                           judged ? per_cent(finding.explained) : "",
-                          compared ? fmt::format("{:.0f}", finding.margin) : ""});
+                          compared ? chart::grouped(std::llround(finding.margin)) : ""});
   }
   return table;
 }
 
 chart::TextTable health_table(const study::StreamResult& result) {
-  chart::TextTable table{
-      .title = "Thrusters in the last minute",
-      .head = {"thruster", "gives", "at least", "at most", "changed"},
-      .rows = {},
-      .notes = {"Of its thrust at the start, with an interval of 90 % (docs/howto/diagnosis.md)."},
-      .left = {0, 4}};
+  chart::TextTable table{.title = "Thrusters in the last minute",
+                         .head = {"thruster", "gives", "at least", "at most", "changed"},
+                         .rows = {},
+                         .notes = {},
+                         .left = {0, 4}};
+  std::vector<std::string> untold;
   for (const Cause& present : result.diagnosis.present) {
     const auto& [cause, times] =
         study::since_the_start(present, result.diagnosis.health, result.diagnosis.findings);
@@ -55,9 +62,21 @@ chart::TextTable health_table(const study::StreamResult& result) {
     for (const double time_s : times) {
       changed += fmt::format("{}at {:.0f} s", changed.empty() ? "" : ", ", time_s);
     }
+    if (!is_told(cause) && times.empty()) {
+      untold.push_back(result.input_names[cause.place]);
+      continue;
+    }
     table.rows.push_back({result.input_names[cause.place], per_cent(cause.size),
                           per_cent(cause.lower), per_cent(cause.upper),
                           changed.empty() ? "–" : changed});
+  }
+  if (!table.rows.empty()) {
+    table.notes.emplace_back(
+        "Of its thrust at the start, with an interval of 90 % (docs/howto/diagnosis.md).");
+  }
+  if (!untold.empty()) {
+    table.notes.push_back(
+        fmt::format("The last minute does not tell the thrust of {}.", chart::list_text(untold)));
   }
   return table;
 }

@@ -119,7 +119,8 @@ std::string countdown_figure(const format::PlannedDrive& drive) {
 }
 
 std::string track_figure(const format::PlannedDrive& drive) {
-  const double radius = drive.bounds.radius_m;
+  // The track fills the figure, however wide the bound is.
+  const double radius = std::min(drive.bounds.radius_m, 1.25 * drive.plan.extent.farthest_m);
   chart::Figure figure({.label = "x in m", .range = chart::Extent{-radius, radius}},
                        {.label = "y in m", .range = chart::Extent{-radius, radius}},
                        "Track of the identified vehicle");
@@ -129,10 +130,10 @@ std::string track_figure(const format::PlannedDrive& drive) {
     track.push_back({motion.position_m[0], motion.position_m[1]});
   }
   figure.dots(track, 0, "identified vehicle");
-  return figure.html(
-      fmt::format("At most {:.1f} m from the start and {:.2f} m/s, for all vehicles "
-                  "that the log allows",
-                  drive.plan.extent.farthest_m, drive.plan.extent.fastest_m_s));
+  return figure.html(fmt::format(
+      "At most {:.1f} m from the start (bound {:g}) and {:.2f} m/s, for all vehicles "
+      "that the log allows",
+      drive.plan.extent.farthest_m, drive.bounds.radius_m, drive.plan.extent.fastest_m_s));
 }
 
 // Depth, roll and pitch over time.

@@ -24,6 +24,21 @@ using health::HealthCard;
 
 constexpr std::size_t kMostEpisodes = 60;  // of a table
 
+// With true minus signs, as all other tables have; hyphens in names stay.
+std::string with_minus(const std::string& text) {
+  std::string signs;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == ' ' || text[i - 1] == '(';
+    const bool is_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    signs += text[i] == '-' && begins && is_digit ? "−" : std::string(1, text[i]);
+  }
+  return signs;
+}
+
+std::string change_words(const HealthCard& card, const Change& change) {
+  return with_minus(health::change_text(card, change));
+}
+
 std::string baseline_words(const HealthCard& card, const Change& change) {
   return change.baseline == 0
              ? ""
@@ -67,7 +82,7 @@ std::string quiet_text(const HealthCard& card) {
   for (const Change& change : card.changes) {
     if (change.baseline == 0 && change.course.kind == CourseKind::constant) {
       quiet.push_back(fmt::format("{} ({})", card.table.quantities[change.quantity].name,
-                                  health::change_size(card, change)));
+                                  with_minus(health::change_size(card, change))));
     }
   }
   return quiet.empty() ? "" : "No change: " + chart::list_text(quiet) + ".";
@@ -80,7 +95,7 @@ std::string value_text(const health::Quantity& quantity, const Estimate& estimat
   const double scale = quantity.unit.empty() ? 100.0 : 1.0;
   const double half = scale * kNormal90 * estimate.error;
   const int places = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6);
-  return fmt::format("{:.{}f} ± {:.{}f}", scale * estimate.value, places, half, places);
+  return with_minus(fmt::format("{:.{}f} ± {:.{}f}", scale * estimate.value, places, half, places));
 }
 
 chart::TextTable episodes_view(const HealthCard& card) {
@@ -115,7 +130,7 @@ chart::TextTable changes_view(const HealthCard& card) {
   view.left = {0, 1, 2};
   for (const Change& change : card.changes) {
     view.rows.push_back({card.table.quantities[change.quantity].name,
-                         card.baselines[change.baseline].name, health::change_text(card, change),
+                         card.baselines[change.baseline].name, change_words(card, change),
                          fmt::format("{:.1f}", change.course.nats)});
   }
   view.notes.push_back(fmt::format(
@@ -141,7 +156,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
   const health::Quantity& quantity = card.table.quantities[change.quantity];
   const health::Series series = health::series_of(card.table, change.quantity);
   const double scale = quantity.unit.empty() ? 100.0 : 1.0;
-  const double first = card.table.episodes.front().day;
+  const double first = card.is_dated ? card.table.episodes.front().day : 0.0;
   std::vector<chart::Point> points;
   std::vector<chart::Point> course;
   std::vector<double> halves;
@@ -152,7 +167,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
     course.push_back({x, scale * course_at(change.course, series.days[i])});
   }
   chart::Figure figure(
-      {card.is_dated ? "days since " + health::day_text(card, first) : "days", {}},
+      {card.is_dated ? "days since " + health::day_text(card, first) : "day", {}},
       {fmt::format("{} [{}]", quantity.name, quantity.unit.empty() ? "%" : quantity.unit), {}},
       quantity.name + " from episode to episode");
   figure.band(points, halves, 0, "90 % interval");
@@ -166,7 +181,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
   if (health::is_found(change.course)) {
     figure.mark(change.course.since_day - first, "change");
   }
-  return figure.html(health::change_text(card, change) + ".");
+  return figure.html(change_words(card, change) + ".");
 }
 
 std::string health_figures(const HealthCard& card) {
@@ -193,7 +208,7 @@ std::string health_headline(const std::vector<HealthCard>& cards) {
     return has_too_few_episodes(cards.front()) ? "Too few episodes to tell a change."
                                                : "No significant change was found.";
   }
-  return health::change_text(cards.front(), *found.front()) + ".";
+  return change_words(cards.front(), *found.front()) + ".";
 }
 
 }  // namespace
@@ -204,7 +219,7 @@ std::string health_verdict(const std::vector<HealthCard>& cards) {
     text += chart::wrapped(chart::printable(span_text(card))) + "\n";
     const std::vector<const Change*> found = found_changes(card);
     for (const Change* change : found) {
-      text += chart::wrapped("  " + chart::printable(health::change_text(card, *change) +
+      text += chart::wrapped("  " + chart::printable(change_words(card, *change) +
                                                      baseline_words(card, *change))) +
               "\n";
     }
@@ -232,18 +247,19 @@ std::string health_tables(const std::vector<HealthCard>& cards) {
 }
 
 std::string health_html(const std::vector<HealthCard>& cards) {
+  const std::string headline = health_headline(cards);
   std::string opening =
       chart::paragraph(
           "over", "Health of " + (cards.size() == 1 ? cards.front().vehicle
                                                     : fmt::format("{} vehicles", cards.size()))) +
-      chart::heading(1, health_headline(cards));
+      chart::heading(1, headline);
   std::vector<chart::Section> sections;
   std::vector<chart::Section> values;
   for (const HealthCard& card : cards) {
     opening += chart::paragraph("", span_text(card) + ".");
     for (const Change* change : found_changes(card)) {
-      opening += chart::paragraph(
-          "", health::change_text(card, *change) + baseline_words(card, *change) + ".");
+      const std::string news = change_words(card, *change) + baseline_words(card, *change);
+      opening += news + "." == headline ? "" : chart::paragraph("", news + ".");
     }
     for (const std::string& remark : card.table.remarks) {
       opening += chart::paragraph("note", remark + ".");

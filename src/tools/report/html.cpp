@@ -125,23 +125,30 @@ std::string course_section(const study::StreamResult& result, Clock clock) {
   return text;
 }
 
+// A table under its title; without rows the words instead. Empty without both.
+std::string titled(const chart::TextTable& table, const std::string& words) {
+  if (!table.rows.empty()) {
+    return chart::html_tables({table});
+  }
+  return words.empty() ? "" : chart::heading(3, table.title) + chart::paragraph("", words);
+}
+
 // Empty where nothing changed and there is nothing to say of thrusters.
 std::string diagnosis_section(const study::StreamResult& result) {
   const chart::TextTable changes = change_table(result);
   const chart::TextTable health = health_table(result);
-  return changes.rows.empty() && health.rows.empty()
+  const std::string thrusters = titled(health, health.notes.empty() ? "" : health.notes.front());
+  return changes.rows.empty() && thrusters.empty()
              ? ""
-             : chart::columns(changes.rows.empty() ? chart::heading(3, changes.title) +
-                                                         chart::paragraph("", "Nothing.")
-                                                   : chart::html_tables({changes}),
-                              chart::html_tables({health}));
+             : chart::columns(titled(changes, "Nothing."), thrusters);
 }
 
 std::string accuracy_section(const study::StreamResult& result, Clock clock) {
   const std::string text =
       r2_figure(result, clock) +
       chart::html_table(axes_table(
-          result, {"axis", "R²\nat the end", "R²\nmean", "R² lowest\nafter 1,000", "R² one\nahead"},
+          result,
+          {"axis", "R²\nat the end", "R²\nmean", "R² lowest\nafter 1,000 rows", "R² one\nahead"},
           "One ahead: each sample predicted just before it was learned.",
           [](const study::AxisResult& axis) -> std::vector<std::string> {
             return {chart::decimal(axis.r2_final), chart::decimal(axis.r2_mean),

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <ranges>
 #include <utility>
 #include <vector>
@@ -217,13 +218,15 @@ void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clo
   }
 }
 
-std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most) {
-  std::vector<chart::Point> finite;
+namespace {
+
+// Places of finite held-out rows, evenly thinned to at most `most`.
+std::vector<std::size_t> picked_rows(const study::AxisResult& axis, std::size_t most) {
+  std::vector<std::size_t> finite;
   const std::size_t rows = std::min(axis.held_out_true.size(), axis.held_out_predicted.size());
   for (std::size_t i = 0; i < rows; ++i) {
-    const chart::Point point{axis.held_out_true[i], axis.held_out_predicted[i]};
-    if (std::isfinite(point.x) && std::isfinite(point.y)) {
-      finite.push_back(point);
+    if (std::isfinite(axis.held_out_true[i]) && std::isfinite(axis.held_out_predicted[i])) {
+      finite.push_back(i);
     }
   }
   const std::size_t kept = std::min(most, finite.size());
@@ -232,6 +235,26 @@ std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t 
   }
   finite.resize(kept);
   return finite;
+}
+
+chart::Point dot_of(const study::AxisResult& axis, std::size_t row) {
+  return {axis.held_out_true[row], axis.held_out_predicted[row]};
+}
+
+// Whether R² at the end counts a held-out row.
+bool is_of_last_configuration(const study::AxisResult& axis, std::size_t row) {
+  return axis.stages.empty() || row >= axis.held_out_time_s.size() ||
+         std::ranges::binary_search(axis.stages.back().time_s, axis.held_out_time_s[row]);
+}
+
+}  // namespace
+
+std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most) {
+  std::vector<chart::Point> points;
+  for (const std::size_t row : picked_rows(axis, most)) {
+    points.push_back(dot_of(axis, row));
+  }
+  return points;
 }
 
 std::vector<Interval> intervals_of(const study::AxisResult& axis, std::size_t most) {
@@ -293,13 +316,25 @@ std::string unit_of(const study::AxisResult& axis) {
   return axis.unit.empty() ? "the log's own unit" : chart::unit_text(axis.unit);
 }
 
-// Of single samples; begins with a minute or so.
+// Of single samples.
 chart::Figure figure_of_samples(Clock clock, const study::AxisResult& axis,
                                 const std::string& description) {
-  chart::Figure figure(clock.axis(), {name_of(axis) + " in " + unit_of(axis)}, description);
-  figure.link("time");
-  figure.begin_at(clock.first);
-  return figure;
+  return {clock.axis(), {name_of(axis) + " in " + unit_of(axis)}, description};
+}
+
+// As long as the clock's first window, and this window where there are held-out rows in it: of
+// blocks or pieces there are often none.
+chart::Extent held_out_window(const study::AxisResult& axis, Clock clock) {
+  const auto after = std::ranges::lower_bound(axis.held_out_time_s, clock.first.low, {}, clock);
+  if (axis.held_out_time_s.empty() ||
+      (after != axis.held_out_time_s.end() && clock(*after) < clock.first.high)) {
+    return clock.first;
+  }
+  const double length = clock.first.high - clock.first.low;
+  const double from = after != axis.held_out_time_s.end()
+                          ? clock(*after)
+                          : clock(axis.held_out_time_s.back()) - length;
+  return {from, from + length};
 }
 
 std::size_t clip(std::vector<chart::Point>& points, chart::Extent range) {
@@ -367,6 +402,8 @@ std::string course_figure(const study::AxisResult& axis, Clock clock) {
   chart::Figure figure = figure_of_samples(
       clock, axis,
       axis.name + ": every sample as measured and as predicted just before it was learned");
+  figure.link("time");
+  figure.begin_at(clock.first);
   figure.band(predicted, values_of(over_time(clock, steps.time_s, halves(steps))), kPredicted,
               "interval");
   figure.line(truth, kTruth, "measured");
@@ -428,6 +465,8 @@ std::string r2_figure(const study::StreamResult& result, Clock clock) {
 std::string held_out_figure(const study::AxisResult& axis, Clock clock) {
   chart::Figure figure =
       figure_of_samples(clock, axis, axis.name + ": held-out rows, true and predicted, over time");
+  figure.link("held_out");
+  figure.begin_at(held_out_window(axis, clock));
   const bool alone = scattered(axis.held_out_time_s);
   const auto add = [&](const std::vector<double>& values, std::size_t style, const char* name) {
     const std::vector<chart::Point> points = over_time(clock, axis.held_out_time_s, values);
@@ -442,10 +481,13 @@ std::string held_out_figure(const study::AxisResult& axis, Clock clock) {
 }
 
 std::string scatter_figure(const study::AxisResult& axis) {
-  const std::vector<chart::Point> points = scatter_of(axis, kMostDots);
-  std::vector<double> all = values_of(points);
-  for (const chart::Point& point : points) {
-    all.push_back(point.x);
+  std::vector<chart::Point> counted;
+  std::vector<chart::Point> earlier;
+  std::vector<double> all;
+  for (const std::size_t row : picked_rows(axis, kMostDots)) {
+    const chart::Point dot = dot_of(axis, row);
+    (is_of_last_configuration(axis, row) ? counted : earlier).push_back(dot);
+    all.insert(all.end(), {dot.x, dot.y});
   }
   const auto [low, high] = chart::range_of(all);
   const double room = std::max(0.04 * (high - low), 1e-9);
@@ -454,11 +496,17 @@ std::string scatter_figure(const study::AxisResult& axis) {
                        {"predicted, in " + unit_of(axis), range},
                        axis.name + ": predicted against true value of held-out rows");
   figure.make_square();
-  figure.dots(points, kTruth, "held-out row");
+  const bool several = !earlier.empty();
+  figure.dots(earlier, kPredicted, several ? "earlier" : "");
+  figure.dots(counted, kTruth, several ? "last" : "held-out row");
   figure.reference({range.low, range.low}, {range.high, range.high});
-  return figure.html(fmt::format(
-      "{} of {} held-out rows, evenly picked; on the dashed diagonal prediction and truth agree.",
-      chart::grouped(points.size()), chart::grouped(axis.held_out_true.size())));
+  const std::size_t shown = counted.size() + earlier.size();
+  const std::size_t rows = axis.held_out_true.size();
+  return figure.html((shown < rows ? fmt::format("{} of {} held-out rows, evenly picked",
+                                                 chart::grouped(shown), chart::grouped(rows))
+                                   : fmt::format("{} held-out rows", chart::grouped(rows))) +
+                     "; on the dashed diagonal prediction and truth agree." +
+                     (several ? " R² counts the last configuration alone." : ""));
 }
 
 std::string coverage_figure(const study::StreamResult& result, Clock clock) {
@@ -527,17 +575,69 @@ std::string formula_of(const study::TermView& view) {
   return chart::shortened(view.term.formula, chart::kLongestName);
 }
 
-// A series of the looks, and its standard error, each times a factor.
-void add_term(chart::Figure& figure, const study::AxisResult& axis, const study::TermView& view,
-              double factor, Clock clock, std::size_t style, const std::string& name) {
-  std::vector<chart::Point> curve;
-  std::vector<double> errors;
+// A series of the looks, and its standard error.
+struct TermLine {
+  std::string name;
+  std::vector<chart::Point> curve{};
+  std::vector<double> errors{};
+};
+
+// Each number times a factor.
+TermLine term_line(const study::AxisResult& axis, const study::TermView& view, double factor,
+                   Clock clock) {
+  TermLine line{formula_of(view)};
   for (std::size_t i = 0; i < axis.validation.size(); ++i) {
-    curve.push_back({clock(axis.validation[i].time_s), factor * view.values[i]});
-    errors.push_back(std::abs(factor) * view.errors[i]);
+    line.curve.push_back({clock(axis.validation[i].time_s), factor * view.values[i]});
+    line.errors.push_back(std::abs(factor) * view.errors[i]);
   }
-  figure.band(curve, errors, style);
-  figure.line(curve, style, name);
+  return line;
+}
+
+// What most values with their errors are in, with as much room, and all values of the later half;
+// empty where nothing lies outside. The first looks are often far off, and would flatten the rest.
+std::optional<chart::Extent> settled_range(const std::vector<TermLine>& lines) {
+  std::vector<double> all;
+  std::vector<double> late;
+  for (const TermLine& line : lines) {
+    for (std::size_t i = 0; i < line.curve.size(); ++i) {
+      const double value = line.curve[i].y;
+      const double error = std::isfinite(line.errors[i]) ? line.errors[i] : 0.0;
+      if (std::isfinite(value)) {
+        all.insert(all.end(), {value - error, value + error});
+        if (2 * i >= line.curve.size()) {
+          late.push_back(value);
+        }
+      }
+    }
+  }
+  if (all.empty() || late.empty()) {
+    return std::nullopt;
+  }
+  const double low = quantile(all, 0.1);
+  const double high = quantile(all, 0.9);
+  const auto [least, greatest] = chart::range_of(late);
+  const chart::Extent range{std::min(2.0 * low - high, least),
+                            std::max(2.0 * high - low, greatest)};
+  const auto [lowest, highest] = chart::range_of(all);
+  return range.low < range.high && (lowest < range.low || highest > range.high)
+             ? std::optional(range)
+             : std::nullopt;
+}
+
+// A figure of the lines, and what to say of values outside.
+std::pair<chart::Figure, std::string> terms_figure(const std::vector<TermLine>& lines,
+                                                   std::size_t first_style,
+                                                   const std::string& y_label,
+                                                   const std::string& description,
+                                                   const study::AxisResult& axis, Clock clock) {
+  const std::optional<chart::Extent> range = settled_range(lines);
+  chart::Figure figure = figure_over_time(clock, {y_label, range}, description);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    figure.band(lines[i].curve, lines[i].errors, first_style + i);
+    figure.line(lines[i].curve, first_style + i, lines[i].name);
+  }
+  mark_events(figure, axis, clock);
+  return {std::move(figure), range ? "Values far outside the others are cut off." : ""};
 }
 
 }  // namespace
@@ -546,12 +646,13 @@ std::string effects_figure(const study::AxisResult& axis, Clock clock) {
   const std::vector<study::TermView> shown =
       study::most_effective(study::term_views(axis), kMostTermLines);
   const std::string unit = axis.unit.empty() ? "the target's unit" : chart::unit_text(axis.unit);
-  chart::Figure figure = figure_over_time(
-      clock, {"effect in " + unit}, axis.name + ": effects of the physics terms over the stream");
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    add_term(figure, axis, shown[i], shown[i].term.rms, clock, i, formula_of(shown[i]));
+  std::vector<TermLine> lines;
+  for (const study::TermView& view : shown) {
+    lines.push_back(term_line(axis, view, view.term.rms, clock));
   }
-  mark_events(figure, axis, clock);
+  const auto& [figure, outside] =
+      terms_figure(lines, 0, "effect in " + unit,
+                   axis.name + ": effects of the physics terms over the stream", axis, clock);
   std::string caption =
       "Effect: a term's contribution at its root mean square over the training rows, in " + unit +
       ". Shaded: ± one standard error.";
@@ -559,7 +660,7 @@ std::string effects_figure(const study::AxisResult& axis, Clock clock) {
     caption += fmt::format(" The {} largest of {} terms; all are in result.json.", shown.size(),
                            axis.terms.size());
   }
-  return figure.html(caption);
+  return figure.html(caption + (outside.empty() ? "" : " " + outside));
 }
 
 std::vector<std::string> coefficient_figures(const study::AxisResult& axis, Clock clock) {
@@ -568,11 +669,10 @@ std::vector<std::string> coefficient_figures(const study::AxisResult& axis, Cloc
        study::most_effective(study::term_views(axis), kMostTermLines)) {
     const std::string unit =
         view.term.unit.empty() ? "the log's units" : chart::unit_text(view.term.unit);
-    chart::Figure figure = figure_over_time(clock, {"coefficient in " + unit},
-                                            axis.name + ": coefficient of " + view.term.formula);
-    add_term(figure, axis, view, 1.0, clock, figures.size(), formula_of(view));
-    mark_events(figure, axis, clock);
-    figures.push_back(figure.html());
+    const auto& [figure, outside] =
+        terms_figure({term_line(axis, view, 1.0, clock)}, figures.size(), "coefficient in " + unit,
+                     axis.name + ": coefficient of " + view.term.formula, axis, clock);
+    figures.push_back(figure.html(outside));
   }
   return figures;
 }

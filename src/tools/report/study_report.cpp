@@ -232,8 +232,8 @@ std::string study_html(const StudyView& study) {
                               "Each run learns one log anew, in the order of time, and is "
                               "judged on rows held out of it. " +
                                   std::string(kBaselineNote));
-  const std::string vehicles =
-      chart::panels(vehicle_figures(study)) + chart::html_table(vehicles_view(study, kStudyFinal));
+  const std::string vehicles = chart::panels(vehicle_figures(study)) +
+                               chart::html_tables({vehicles_view(study, kStudyFinal)});
   chart::TextTable tenth = vehicles_view(study, kStudyFinal, kMostStudyRows, &fleet::Spread::tenth);
   tenth.title = "R² on held-out rows, at the end: 10th percentile over the runs";
   std::string more;

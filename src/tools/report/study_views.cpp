@@ -269,6 +269,18 @@ std::string findings_headline(const StudyView& study) {
                            counted(vehicles.size(), "vehicle"));
 }
 
+namespace {
+
+// Of a mission; what the thrusters have left at its end comes after the findings and is none.
+std::string last_finding(const fleet::MissionFindings& mission) {
+  const auto found = std::find_if(
+      mission.findings.rbegin(), mission.findings.rend(),
+      [](const std::string& finding) { return !finding.starts_with("left at the end"); });
+  return found == mission.findings.rend() ? "–" : *found;
+}
+
+}  // namespace
+
 chart::TextTable vehicle_findings_view(const StudyView& study) {
   chart::TextTable table{
       "Which vehicle has what", {"vehicle", "missions", "the last finding", "in"}, {}};
@@ -283,8 +295,7 @@ chart::TextTable vehicle_findings_view(const StudyView& study) {
       const fleet::MissionFindings& last = vehicle.findings.back();
       table.rows.push_back({cell_name(vehicle.name),
                             fmt::format("{} of {}", vehicle.findings.size(), vehicle.missions),
-                            last.findings.empty() ? "–" : last.findings.back(),
-                            study.results.missions()[last.mission].mission});
+                            last_finding(last), study.results.missions()[last.mission].mission});
     }
   }
   cut(table, all, "the first");

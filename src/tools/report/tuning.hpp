@@ -22,6 +22,7 @@ inline constexpr struct Tuning {
   std::ptrdiff_t rows_since = 500;  ///< after a change, that are worth learning alone
   std::size_t most_changes = 6;     ///< lines about changes of the vehicle in a verdict
   double told_skipped = 0.05;       ///< share of the rows: more left out are told
+  double told_thrust = 1.0;         ///< widest interval of a thruster's share that tells the share
   double same_change_s = 15.0;      ///< between two beginnings of one change [s]
   double clear_gain = 0.05;         ///< of R², by the commands, in the first look at a log
   double structure_loss = 0.05;     ///< of R²: a larger loss to untied terms is a warning

@@ -52,11 +52,15 @@ std::string quality_of(const study::AxisResult& axis) {
   return quality(r2);
 }
 
-// Whether least squares is as good without the commands.
-bool commands_say_nothing(const study::Baselines& beside) {
-  return std::isfinite(beside.without_commands.r2_final) &&
-         at_least_mean(beside.least_squares.r2_final) <=
-             at_least_mean(beside.without_commands.r2_final) + kTuning.clear_r2;
+// Whether least squares is as good without the commands. Not where least squares fails with the
+// commands and the model, which has them, is ahead of both.
+bool commands_say_nothing(const study::AxisResult& axis) {
+  const double with = axis.baselines.least_squares.r2_final;
+  const double without = axis.baselines.without_commands.r2_final;
+  const bool fails =
+      with < without - kTuning.clear_r2 && axis.r2_final > without + kTuning.clear_r2;
+  return std::isfinite(without) && !fails &&
+         at_least_mean(with) <= at_least_mean(without) + kTuning.clear_r2;
 }
 
 std::string learned_line(const study::StreamResult& result) {
@@ -185,9 +189,7 @@ std::vector<std::string> warning_lines(const study::StreamResult& result) {
   };
   if (all([](const study::AxisResult& axis) { return !axis.status.ready || axis.status.early; })) {
     lines.emplace_back("nothing was learned: the log has too few rows for a scale");
-  } else if (all([](const study::AxisResult& axis) {
-               return commands_say_nothing(axis.baselines);
-             })) {
+  } else if (all([](const study::AxisResult& axis) { return commands_say_nothing(axis); })) {
     lines.emplace_back(
         "these commands do not move this vehicle: least squares predicts as well without the "
         "commands. Are the commands the right columns, at the right times?");
@@ -211,7 +213,7 @@ std::string verdict_of(const study::AxisResult& axis) {
   if (behind > kTuning.clear_r2) {
     return fmt::format("{}; least squares is better by {:.2f}", quality, behind);
   }
-  return quality + (commands_say_nothing(axis.baselines) ? "; the commands say nothing" : "");
+  return quality + (commands_say_nothing(axis) ? "; the commands say nothing" : "");
 }
 
 std::string quality_sentence(const study::StreamResult& result) {

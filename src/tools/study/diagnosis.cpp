@@ -95,8 +95,12 @@ std::vector<std::string> diagnosis_lines(const StreamResult& result) {
                                 finding_text(finding, {result.input_names, targets})));
   }
   if (!lines.empty() && result.diagnosis.authority) {
-    lines.push_back("left at the end: " +
-                    result.diagnosis.authority->text({result.input_names, targets}));
+    std::string left = result.diagnosis.authority->text({result.input_names, targets});
+    const std::size_t current = left.find(" from ahead");
+    if (current != std::string::npos && result.axes.front().unit == "m s^-2") {
+      left.insert(current, " m/s");
+    }
+    lines.push_back("left at the end: " + left);
   }
   return lines;
 }

@@ -79,6 +79,7 @@ TEST(ComparisonReport, BeginsWithTheAdviceAndARankedTable) {
   EXPECT_EQ(ranked.rows[0][0], "terms=none");
   EXPECT_EQ(ranked.rows[1][0], "least squares");
   EXPECT_EQ(ranked.rows[2].back(), "0.100");
+  EXPECT_TRUE(ranked.notes[0].starts_with("R² on held-out rows, at the end."));
   const std::string page = report::comparison_html(comparison(kFinals));
   EXPECT_LT(page.find(">No gain: keep the defaults.</h1>"), page.find("<table")) << "one sentence";
 }

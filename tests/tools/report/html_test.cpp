@@ -141,6 +141,22 @@ TEST(Html, AThrusterThatLostThrustIsNotWellAgain) {
             std::string::npos);
 }
 
+TEST(Html, AThrustThatTheLastMinuteDoesNotTellIsNoNumber) {
+  study::StreamResult result = synthetic::stream(1);
+  result.diagnosis.present = {{CauseKind::thruster, 3, 1.0, 1.0, 1.0},
+                              {CauseKind::thruster, 4, 1.0, 1.0, 1.0}};
+  std::string page = report::report_html(result);
+  EXPECT_EQ(page.find("<td>100 %</td>"), std::string::npos) << "never estimated";
+  EXPECT_NE(page.find("The last minute does not tell the thrust of th1 and th2."),
+            std::string::npos);
+  result.diagnosis.health = {{CauseKind::thruster, 3, 0.4, -3.3, 4.1},
+                             {CauseKind::thruster, 4, 1.0, 0.9, 1.1}};
+  page = report::report_html(result);
+  EXPECT_EQ(page.find("330 %"), std::string::npos);
+  EXPECT_NE(page.find("<td>100 %</td><td>90 %</td><td>110 %</td>"), std::string::npos);
+  EXPECT_NE(page.find("does not tell the thrust of th1."), std::string::npos);
+}
+
 TEST(Html, HostileTextFromTheLogIsShownNotRun) {
   for (const std::string& evil : {std::string("</script><script>alert(1)</script>\"'&\x01\xff"),
                                   // NOLINTNEXTLINE(misc-misleading-bidirectional)

@@ -40,5 +40,19 @@ TEST(IdentificationReport, IntervalsAreBarsOnAScaleOfTheValue) {
   EXPECT_NE(page.find("left:0.0%;width:100.0%"), std::string::npos) << "cut at both ends";
 }
 
+TEST(IdentificationReport, UnitsAreAsPeopleWriteThem) {
+  study::Identification found = found_nothing();
+  found.scale = study::ScaleSource::thrust;
+  found.speed_units = {"rev s^-1"};
+  found.planar.parameters.assign(
+      PlanarPlace::thrusters + 1,
+      {.name = "one", .value = 2.0, .error = 0.1, .state = ParameterState::identified});
+  found.planar.covariance = Matrix(found.planar.parameters.size(), found.planar.parameters.size());
+  const std::string page = report::identification_html(found);
+  EXPECT_NE(page.find("N/(rev/s)²"), std::string::npos);
+  EXPECT_NE(page.find("N s²/m²"), std::string::npos);
+  EXPECT_EQ(page.find("^2"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace kelpie::identification_report_test

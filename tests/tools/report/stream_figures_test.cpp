@@ -171,6 +171,66 @@ TEST(StreamFigures, OfManyTermsTheLargestAreDrawnAndThatIsSaid) {
   EXPECT_TRUE(says(html, "The 7 largest of 20 terms"));
 }
 
+TEST(StreamFigures, TheFirstWildCoefficientsDoNotFlattenTheOthers) {
+  study::AxisResult axis = synthetic::stream_with_terms(1).axes[0];
+  EXPECT_FALSE(read(report::effects_figure(axis, kClock)).spec["y"].contains("range"));
+  axis.validation[2].coefficients[0] = 5000.0;
+  axis.validation[3].errors[0] = 9000.0;
+  const std::string html = report::effects_figure(axis, kClock);
+  ASSERT_TRUE(read(html).spec["y"].contains("range"));
+  const nlohmann::json range = read(html).spec["y"]["range"];
+  EXPECT_LT(range[1].get<double>(), 1.0);
+  EXPECT_LE(range[0].get<double>(), -0.2) << "the damping stays in view";
+  EXPECT_TRUE(says(html, "Values far outside the others are cut off."));
+  EXPECT_TRUE(says(report::coefficient_figures(axis, kClock)[0], "cut off"));
+}
+
+TEST(StreamFigures, ALateStepOfACoefficientStaysInView) {
+  study::AxisResult axis = synthetic::stream_with_terms(1).axes[0];
+  axis.validation[2].coefficients[1] = 1.0;
+  axis.validation.back().coefficients[1] = 0.5;
+  const nlohmann::json spec = read(report::coefficient_figures(axis, kClock)[1]).spec;
+  ASSERT_TRUE(spec["y"].contains("range"));
+  EXPECT_GE(spec["y"]["range"][1].get<double>(), 0.5);
+  EXPECT_LT(spec["y"]["range"][1].get<double>(), 1.0);
+}
+
+// Held-out rows of 100 s to 200 s and of 300 s to 400 s; the first window lies between.
+TEST(StreamFigures, HeldOutRowsOverTimeBeginWhereThereAreSome) {
+  study::AxisResult axis;
+  axis.name = "udot";
+  for (const double begin : {100.0, 300.0}) {
+    for (double time = begin; time < begin + 100.0; time += 0.25) {
+      axis.held_out_time_s.push_back(time);
+      axis.held_out_true.push_back(time);
+      axis.held_out_predicted.push_back(time);
+    }
+  }
+  const auto start = [&](double from) {
+    const report::Clock clock{0.0, {0.0, 500.0}, {from, from + 60.0}};
+    return read(report::held_out_figure(axis, clock)).spec["start"];
+  };
+  EXPECT_EQ(start(220.0), nlohmann::json({300.0, 360.0}));
+  EXPECT_EQ(start(150.0), nlohmann::json({150.0, 210.0})) << "rows there already";
+  EXPECT_EQ(start(430.0)[1], axis.held_out_time_s.back()) << "the last ones";
+}
+
+TEST(StreamFigures, RowsThatR2DoesNotCountAreTold) {
+  study::AxisResult axis = synthetic::axis("a", 100, 40);
+  axis.stages.resize(2);
+  const auto last = axis.held_out_time_s.begin() + 30;
+  axis.stages[0].time_s.assign(axis.held_out_time_s.begin(), last);
+  axis.stages[1].time_s.assign(last, axis.held_out_time_s.end());
+  const std::string html = report::scatter_figure(axis);
+  EXPECT_EQ(read(html).values("earlier").size(), 30U);
+  EXPECT_EQ(read(html).values("last").size(), 10U);
+  EXPECT_TRUE(says(html, "R² counts the last configuration alone."));
+  axis.stages = {axis.stages[1]};
+  axis.stages[0].time_s = axis.held_out_time_s;
+  EXPECT_EQ(read(report::scatter_figure(axis)).values("held-out row").size(), 40U);
+  EXPECT_TRUE(says(report::scatter_figure(axis), ">40 held-out rows; on the dashed"));
+}
+
 TEST(StreamFigures, ScatterSaysHowFarItIsThinned) {
   const std::string html = report::scatter_figure(synthetic::axis("a", 100, 4000));
   EXPECT_TRUE(says(html, "1,500 of 4,000 held-out rows"));

@@ -58,6 +58,18 @@ TEST(StudyReport, SaysWhoIsBestAndWhatFallsAndFits) {
   EXPECT_LT(pages.page.find("<td class=\"left\">since 50.0 s: th2 gives"), pages.page.find("<nav"));
 }
 
+TEST(StudyReport, TheLastFindingIsACauseNotWhatIsLeftAtTheEnd) {
+  ForgedStudy study;
+  study.add_vehicle("one", 3);
+  const Pages pages = pages_of(study, [](const fleet::Combination& one) {
+    ForgedStudy::Forged forged = falling(one);
+    forged.outcome.findings.emplace_back("left at the end: th2 gives 48 % of its thrust: udot 0.8");
+    return forged;
+  });
+  EXPECT_LT(pages.page.find("<td class=\"left\">since 50.0 s: th2 gives"), pages.page.find("<nav"));
+  EXPECT_GT(pages.page.find("<td class=\"left\">left at the end"), pages.page.find("<nav"));
+}
+
 TEST(StudyReport, ItsFiguresShowTheMedians) {
   ForgedStudy study;
   study.add_vehicle("one", 3);

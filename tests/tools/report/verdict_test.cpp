@@ -77,6 +77,15 @@ TEST(Verdict, WarnsWhereTheCommandsSayNothing) {
   EXPECT_TRUE(has(report::verdict_text(result), "WARNING: these commands do not move"));
 }
 
+TEST(Verdict, ALeastSquaresGoneAstrayDoesNotBlameTheCommands) {
+  study::AxisResult axis = two_axes().axes.front();
+  axis.baselines.least_squares.r2_final = -1.4;
+  axis.baselines.without_commands.r2_final = 0.2;
+  EXPECT_EQ(report::verdict_of(axis), "very good");
+  axis.r2_final = 0.2;
+  EXPECT_TRUE(has(report::verdict_of(axis), "the commands say nothing"));
+}
+
 TEST(Verdict, WarnsWhereNothingWasLearned) {
   study::StreamResult result = two_axes();
   for (study::AxisResult& axis : result.axes) {
