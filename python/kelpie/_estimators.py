@@ -59,11 +59,11 @@ Attributes
 ----------
 decisions_ : structured array of y's shape, or a data frame after a data frame: the outcome of
     every row of the last fit() or partial_fit(). `predicted`, `lower`, `upper` are from before the
-    row was learned: one step ahead. `disturbance` is the estimate from the model's last errors, `corrected_lower` and
-    `corrected_upper` the interval around the sum. Further `verdict` (Verdict), `had_model`,
-    `early` (by a model with a scale of few rows), `similarity`, `outliers`, `forgotten`,
-    `released`, `iterations`, `kkt_gap`, `served`,
-    `unserved`, `unfinished`, `fallbacks`, `suspected` (errors have grown: a challenger is tried),
+    row was learned: one step ahead. `disturbance` is the estimate from the model's last errors,
+    `corrected_lower` and `corrected_upper` the interval around the sum. Further `verdict`
+    (Verdict), `had_model`, `early` (by a model with a scale of few rows), `similarity`, `outliers`,
+    `forgotten`, `released`, `iterations`, `kkt_gap`, `served`, `unserved`, `unfinished`,
+    `fallbacks`, `suspected` (errors have grown: a challenger is tried),
     `changed` (a change of the vehicle was found), `changed_since` [s], `recalled` (number of the
     recalled past model, or 0), `withdrawn` (the last change was an error: the previous model is
     back), `regained` (samples gained with another model).

@@ -27,6 +27,8 @@ inline constexpr struct Tuning {
                                              ///< after 90 s, an operator's patience is shorter
   std::chrono::seconds longest_row{60};  ///< [s] for one row, with an alignment search in it, until
                                          ///< the watchdog sees a hang; docs/howto/live.md
+  double command_steps_per_row = 4.0;    ///< at most, of an actuator: messages come far more often
+                                         ///< than rows, and a delay keeps few commands
   double most_kept_rows = 1e6;           ///< of a recording, for the alignment: a day at 10 Hz
 
   // Plausibility
@@ -47,9 +49,6 @@ inline constexpr struct Tuning {
   double identified_s = 1800.0;            ///< of rows that are identified: 3600 windows
   double forgotten_s = 300.0;              ///< of rows that go at a time, the oldest
   double between_identifications_s = 5.0;  ///< a fit of half an hour takes 0.3 s at 20 Hz
-
-  double command_steps_per_row = 4.0;  ///< at most, of an actuator: messages come far more often
-                                       ///< than rows, and a delay keeps few commands
 
   // Reports
   double authority_news = 0.05;  ///< of the nominal range; docs/howto/diagnosis.md

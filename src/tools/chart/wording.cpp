@@ -215,6 +215,12 @@ std::string with_raised_digits(std::string_view unit) {
 }  // namespace
 
 std::string unit_text(std::string_view unit) {
+  constexpr std::string_view kSquared = ")^2";
+  const std::size_t open = unit.find('(');
+  if (open != std::string_view::npos && unit.ends_with(kSquared)) {
+    const std::string_view inside = unit.substr(open + 1, unit.size() - kSquared.size() - open - 1);
+    return unit_text(unit.substr(0, open)) + "(" + unit_text(inside) + ")²";
+  }
   std::string above;
   std::string below;
   bool several = false;

@@ -54,7 +54,8 @@ std::string duration(double microseconds);
 /// "a, b and c".
 std::string list_text(const std::vector<std::string>& parts);
 
-/// A unit as people write it: "m/s²" for "m s^-2", "N·m·s" for "N m s"; other text as it is.
+/// A unit as people write it: "m/s²" for "m s^-2", "N·m·s" for "N m s", "N/(rev/s)²" for
+/// "N/(rev s^-1)^2"; other text as it is.
 std::string unit_text(std::string_view unit);
 
 }  // namespace kelpie::chart

@@ -19,25 +19,13 @@ namespace {
 
 constexpr std::size_t kMostShown = 2000;  // rows in a figure
 
-// As people write it, also within the brackets of a thruster's unit: "N/(rev/s)²".
-std::string shown_unit(const study::Identification& found, std::size_t place) {
-  const std::string unit = format::parameter_unit(found, place);
-  const std::size_t open = unit.find('(');
-  const std::size_t close = unit.rfind(')');
-  if (open == std::string::npos || close == std::string::npos || !unit.ends_with(")^2")) {
-    return chart::unit_text(unit);
-  }
-  return chart::unit_text(unit.substr(0, open)) + "(" +
-         chart::unit_text(unit.substr(open + 1, close - open - 1)) + ")²";
-}
-
 chart::TextTable parameters_view(const study::Identification& found) {
   chart::TextTable table{
       "Parameters", {"parameter", "value", "90 % interval", "± %", "unit", ""}, {}};
   for (std::size_t i = 0; i < found.fit().parameters.size(); ++i) {
     const FittedParameter& parameter = found.fit().parameters[i];
     const std::string name = chart::shortened(parameter.name, chart::kLongestName);
-    const std::string unit = shown_unit(found, i);
+    const std::string unit = chart::unit_text(format::parameter_unit(found, i));
     if (parameter.state == ParameterState::not_told) {
       table.rows.push_back({name, "–", "–", "–", unit, "not told"});
       continue;
@@ -64,7 +52,7 @@ std::string parameter_bars(const study::Identification& found) {
       continue;
     }
     const double half = format::half_width90(parameter);
-    const std::string unit = shown_unit(found, i);
+    const std::string unit = chart::unit_text(format::parameter_unit(found, i));
     const bool is_free = parameter.state == ParameterState::identified;
     rows.push_back({chart::shortened(parameter.name, chart::kLongestName), parameter.value,
                     parameter.value - half, parameter.value + half,

@@ -220,27 +220,6 @@ void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clo
 
 namespace {
 
-// Places of finite held-out rows, evenly thinned to at most `most`.
-std::vector<std::size_t> picked_rows(const study::AxisResult& axis, std::size_t most) {
-  std::vector<std::size_t> finite;
-  const std::size_t rows = std::min(axis.held_out_true.size(), axis.held_out_predicted.size());
-  for (std::size_t i = 0; i < rows; ++i) {
-    if (std::isfinite(axis.held_out_true[i]) && std::isfinite(axis.held_out_predicted[i])) {
-      finite.push_back(i);
-    }
-  }
-  const std::size_t kept = std::min(most, finite.size());
-  for (std::size_t i = 0; i < kept; ++i) {
-    finite[i] = finite[i * finite.size() / kept];
-  }
-  finite.resize(kept);
-  return finite;
-}
-
-chart::Point dot_of(const study::AxisResult& axis, std::size_t row) {
-  return {axis.held_out_true[row], axis.held_out_predicted[row]};
-}
-
 // Whether R² at the end counts a held-out row.
 bool is_of_last_configuration(const study::AxisResult& axis, std::size_t row) {
   return axis.stages.empty() || row >= axis.held_out_time_s.size() ||
@@ -249,12 +228,21 @@ bool is_of_last_configuration(const study::AxisResult& axis, std::size_t row) {
 
 }  // namespace
 
-std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most) {
-  std::vector<chart::Point> points;
-  for (const std::size_t row : picked_rows(axis, most)) {
-    points.push_back(dot_of(axis, row));
+std::vector<ScatterDot> scatter_of(const study::AxisResult& axis, std::size_t most) {
+  std::vector<ScatterDot> finite;
+  const std::size_t rows = std::min(axis.held_out_true.size(), axis.held_out_predicted.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    const chart::Point point{axis.held_out_true[i], axis.held_out_predicted[i]};
+    if (std::isfinite(point.x) && std::isfinite(point.y)) {
+      finite.push_back({point, is_of_last_configuration(axis, i)});
+    }
   }
-  return points;
+  const std::size_t kept = std::min(most, finite.size());
+  for (std::size_t i = 0; i < kept; ++i) {
+    finite[i] = finite[i * finite.size() / kept];
+  }
+  finite.resize(kept);
+  return finite;
 }
 
 std::vector<Interval> intervals_of(const study::AxisResult& axis, std::size_t most) {
@@ -484,9 +472,8 @@ std::string scatter_figure(const study::AxisResult& axis) {
   std::vector<chart::Point> counted;
   std::vector<chart::Point> earlier;
   std::vector<double> all;
-  for (const std::size_t row : picked_rows(axis, kMostDots)) {
-    const chart::Point dot = dot_of(axis, row);
-    (is_of_last_configuration(axis, row) ? counted : earlier).push_back(dot);
+  for (const ScatterDot& dot : scatter_of(axis, kMostDots)) {
+    (dot.is_counted ? counted : earlier).push_back(dot);
     all.insert(all.end(), {dot.x, dot.y});
   }
   const auto [low, high] = chart::range_of(all);

@@ -57,8 +57,13 @@ struct Event {
 std::vector<Event> events_of(const study::AxisResult& axis);  ///< In the order of time.
 void mark_events(chart::Figure& figure, const study::AxisResult& axis, Clock clock);
 
-/// Held-out rows as (true, predicted), evenly thinned to at most `most`, finite ones only.
-std::vector<chart::Point> scatter_of(const study::AxisResult& axis, std::size_t most);
+/// A held-out row as (true, predicted).
+struct ScatterDot : chart::Point {
+  bool is_counted = true;  ///< by R² at the end: a row of the last configuration
+};
+
+/// Finite held-out rows, evenly thinned to at most `most`.
+std::vector<ScatterDot> scatter_of(const study::AxisResult& axis, std::size_t most);
 
 /// Counts of the nodes between two validation points, or several merged points.
 struct Interval {

@@ -47,6 +47,7 @@ TEST(Wording, UnitsReadAsPeopleWriteThem) {
   EXPECT_EQ(chart::unit_text("s^-1"), "1/s");
   EXPECT_EQ(chart::unit_text("N m^2 rad^-1 s^-1"), "N·m²/(rad·s)");
   EXPECT_EQ(chart::unit_text("m^2/(rad s)"), "m²/(rad s)");
+  EXPECT_EQ(chart::unit_text("N/(rev s^-1)^2"), "N/(rev/s)²");
   EXPECT_EQ(chart::unit_text("m^0.5"), "m^0.5");
   EXPECT_EQ(chart::unit_text("m s^-12"), "m s^-12");
   EXPECT_EQ(chart::unit_text("1"), "1");

@@ -75,7 +75,7 @@ TEST(Scatter, IsThinnedEvenlyAndLeavesOutWhatIsNotFinite) {
   study::AxisResult axis = synthetic::axis("a", 100, 5000);
   axis.held_out_predicted[0] = NAN;
   std::iota(axis.held_out_true.begin(), axis.held_out_true.end(), 0.0);
-  const std::vector<chart::Point> points = report::scatter_of(axis, 1000);
+  const std::vector<report::ScatterDot> points = report::scatter_of(axis, 1000);
   ASSERT_EQ(points.size(), 1000U);
   for (std::size_t i = 1; i < points.size(); ++i) {
     EXPECT_NEAR(points[i].x - points[i - 1].x, 5.0, 1.0);
