@@ -94,6 +94,8 @@ TEST(Actuator, TextTellsEveryPropertyOnce) {
                             .actuators = {{.lag_s = 2.0}, {}, {.lag_s = 2.0}, {.dead_band = 3.0}}};
   EXPECT_EQ(alignment.text(),
             "a, c: follow their commands in 2 s; d: has no effect within 3 of rest");
+  EXPECT_EQ((Actuator{.lag_s = 0.118921}).text(), "follows its command in 0.12 s");
+  EXPECT_EQ((Actuator{.lag_s = 99.6}).text(), "follows its command in 100 s");
   const Alignment both{.commands = {"a", "b"}, .actuators = {all, all}};
   EXPECT_EQ(both.text(),
             "a, b: rest at 1500, have no effect within 25 of rest, give 0.8 times as much astern, "
