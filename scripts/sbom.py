@@ -27,7 +27,8 @@ ROOT = Path(__file__).resolve().parent.parent
 LICENCES = {
     "bzip2": "bzip2-1.0.6", "cli11": "BSD-3-Clause", "cyclonedds": "EPL-2.0 OR BSD-3-Clause",
     "eigen3": "MPL-2.0", "fmtlib": "MIT", "gcc": "GPL-3.0-or-later WITH GCC-exception-3.1",
-    "glibc": "LGPL-2.1-or-later", "highway": "Apache-2.0", "libmatio": "BSD-2-Clause",
+    "glibc": "LGPL-2.1-or-later", "hdf5": "BSD-3-Clause", "highway": "Apache-2.0",
+    "libmatio": "BSD-2-Clause",
     "libmicrohttpd": "LGPL-2.1-or-later", "libzip": "BSD-3-Clause",
     "libzstd": "BSD-3-Clause OR GPL-2.0-only", "linux": "GPL-2.0-only WITH Linux-syscall-note",
     "lz4": "BSD-2-Clause", "nlohmann-json3": "MIT", "openmpi": "BSD-3-Clause",
