@@ -207,15 +207,15 @@ class FastPeer : public kelpie::testing::PeerActions {
   void send_text(const std::string& text) override {
     send(cdr_of([&](Cdr& cdr) { cdr << text; }));
   }
-  // Waits for the acknowledgement of a message of many packets, without which a reader may not have
-  // had a heartbeat yet: Cyclone DDS takes such a message that the first heartbeat overtakes for an
-  // earlier message.
+  // Before a message of many packets, waits for the acknowledgement of earlier messages, without
+  // which a reader may not have had a heartbeat yet: Cyclone DDS takes such a message that the
+  // first heartbeat overtakes for an earlier message.
   void send(const Bytes& cdr) override {
-    send_by(writers_.size() - 1, cdr);
     if (constexpr std::size_t kPacket = 60'000; cdr.size() > kPacket) {
       const eprosima::fastrtps::Duration_t patience{30, 0};
       writers_.back()->wait_for_acknowledgments(patience);
     }
+    send_by(writers_.size() - 1, cdr);
   }
 
  private:
