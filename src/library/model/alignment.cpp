@@ -22,10 +22,13 @@ namespace {
 
 constexpr const auto& kAlignment = kModelTuning.alignment;
 
-// To two digits, since the search changes a lag by a fifth at least.
-std::string lag_text(double lag_s) {
+// In two digits, since the search changes a lag by a fifth at least.
+double two_digits(double lag_s) {
+  if (lag_s == 0.0) {
+    return 0.0;
+  }
   const double unit = std::pow(10.0, std::floor(std::log10(lag_s)) - 1.0);
-  return short_number(std::round(lag_s / unit) * unit) + " s";
+  return std::round(lag_s / unit) * unit;
 }
 
 // Of one actuator, or of several alike.
@@ -39,10 +42,8 @@ std::string properties(const Actuator& actuator, bool several) {
   add(actuator.dead_band > 0.0, (several ? "have no effect within " : "has no effect within ") +
                                     short_number(actuator.dead_band) + " of rest");
   add(actuator.astern != 1.0, "give" + s + short_number(actuator.astern) + " times as much astern");
-  if (actuator.lag_s > 0.0) {
-    add(true, (several ? "follow their commands in " : "follows its command in ") +
-                  lag_text(actuator.lag_s));
-  }
+  add(actuator.lag_s > 0.0, (several ? "follow their commands in " : "follows its command in ") +
+                                short_number(two_digits(actuator.lag_s)) + " s");
   add(actuator.rate > 0.0,
       "change" + s + "by at most " + short_number(actuator.rate) + " per second");
   add(actuator.delay_s > 0.0, "begin" + s + short_number(actuator.delay_s) + " s late");
