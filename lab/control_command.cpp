@@ -15,7 +15,6 @@
 #include "chart/text_table.hpp"
 #include "core/text.hpp"
 #include "jobs/run_all.hpp"
-#include "kelpie/core/error.hpp"
 #include "lab/closed_loop.hpp"
 #include "lab/commands.hpp"
 #include "lab/controllers.hpp"

@@ -6,12 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "chart/text_table.hpp"
 #include "cli/output.hpp"
 #include "core/quantile.hpp"
 #include "health/card.hpp"
 #include "health/factors.hpp"
-#include "health/tuning.hpp"
 #include "kelpie/core/random.hpp"
 #include "lab/commands.hpp"
 #include "vehicle/parameters.hpp"

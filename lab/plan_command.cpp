@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "chart/text_table.hpp"
-#include "core/quantile.hpp"
 #include "lab/commands.hpp"
 #include "lab/drive_study.hpp"
 #include "lab/json_table.hpp"

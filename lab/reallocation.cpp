@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "kelpie/core/error.hpp"
 #include "vehicle/parameters.hpp"
 
 namespace kelpie::lab {

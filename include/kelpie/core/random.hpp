@@ -9,8 +9,9 @@
 
 namespace kelpie {
 
-/// A seeded stream of random numbers, equal on every machine and standard library. Streams of one
-/// seed with different names are independent: more numbers of "noise" leave "commands" unchanged.
+/// A seeded stream of random numbers, equal on every machine and standard library; normal() to the
+/// rounding of the machine's logarithm, sine and cosine. Streams of one seed with different names
+/// are independent: more numbers of "noise" leave "commands" unchanged.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view name);  ///< A stream by seed and name.

@@ -220,8 +220,9 @@ class Authority {
   double held_current() const { return held_current_; }
 
   /// "th2 gives 60 % of its thrust: udot 0.80, rdot 0.50 of nominal left; holds a current of 0.30
-  /// from ahead", in the log's unit of surge. Names in the order of the diagnosis.
-  std::string text(const DiagnosisNames& names) const;
+  /// from ahead", in the log's unit of surge, which a speed_unit such as "m/s" names. Names in the
+  /// order of the diagnosis.
+  std::string text(const DiagnosisNames& names, std::string_view speed_unit = {}) const;
 
  private:
   double attainable(std::size_t axis, double sign, bool nominal) const;

@@ -82,9 +82,9 @@ struct Drift {
 /// velocities but the yaw rate are a fault at once where the estimate is beyond three standard
 /// deviations from 0, or the equations of motion at rest expect an acceleration beyond three of
 /// their errors. Constant values that aren't 0 within the noise are frozen after 0.5 s, or three
-/// times the longest hold seen before. A vehicle at rest with exactly constant values (a simulator,
-/// a coarse resolution) counts as not measured for 3 s, and as measured from then on, until the
-/// commands would move it.
+/// times the usual time between new values. A vehicle at rest with exactly constant values (a
+/// simulator, a coarse resolution) counts as not measured for 3 s, and as measured from then on,
+/// until the commands would move it.
 ///
 /// Calibration: while velocities are measured, outages are simulated in parallel, and the process
 /// noise is set so that the predicted covariance matches the errors at the end of the outages

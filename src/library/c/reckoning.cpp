@@ -5,7 +5,6 @@
 
 #include "c/guarded.hpp"
 #include "c/handle.hpp"
-#include "kelpie/model/trained_model.hpp"
 #include "kelpie/navigation/dead_reckoning.hpp"
 
 struct kelpie_reckoning {

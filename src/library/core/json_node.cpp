@@ -6,11 +6,6 @@
 #include "kelpie/core/error.hpp"
 
 namespace kelpie {
-namespace {
-
-constexpr double kLargest = 1e100;  // a square, a million times, is finite still
-
-}  // namespace
 
 Json parse_json(std::string_view text, const std::string& source) {
   try {

@@ -19,6 +19,8 @@ Json parse_json(std::string_view text, const std::string& source);
 /// unsuitable value. Requires the document to be alive.
 class JsonNode {
  public:
+  static constexpr double kLargest = 1e100;  ///< a square, a million times, is finite still
+
   JsonNode(const Json& json, std::string source, std::string path)
       : json_(&json), source_(std::move(source)), path_(std::move(path)) {}
 
@@ -26,7 +28,7 @@ class JsonNode {
   const Json& json() const { return *json_; }
 
   std::string text() const;
-  double number() const;  ///< within ±1e100, so that products stay finite
+  double number() const;  ///< within ±kLargest
   double positive() const;
   std::vector<JsonNode> items() const;
   std::vector<double> numbers(std::size_t size) const;

@@ -4,17 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/hash.hpp"
+
 namespace kelpie {
 namespace {
-
-// FNV-1a: a published, stable hash; std::hash may differ between standard libraries.
-std::uint64_t hash_name(std::string_view name) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char letter : name) {
-    hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3ULL;
-  }
-  return hash;
-}
 
 // SplitMix64's finaliser: neighbouring seeds must not give neighbouring engine states.
 std::uint64_t mix(std::uint64_t z) {
@@ -26,7 +19,7 @@ std::uint64_t mix(std::uint64_t z) {
 }  // namespace
 
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name)
-    : engine_(mix(mix(seed + 0x9e3779b97f4a7c15ULL) ^ hash_name(name))) {}
+    : engine_(mix(mix(seed + 0x9e3779b97f4a7c15ULL) ^ fnv1a(name))) {}
 
 double RandomStream::uniform() {
   return static_cast<double>(engine_() >> 11U) * 0x1.0p-53;

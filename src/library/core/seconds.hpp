@@ -7,6 +7,7 @@
 namespace kelpie {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
+inline constexpr double kSecondsPerHour = 3600.0;
 
 /// The gap rule: the longest step within a stretch of samples, in usual steps. A longer step is a
 /// gap; nothing is fitted, shifted or predicted across a gap. By hand; no measurement recorded.

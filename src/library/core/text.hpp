@@ -8,7 +8,7 @@
 
 namespace kelpie {
 
-/// Text without leading and trailing blanks and tabs.
+/// Text without leading and trailing blanks, tabs and ends of lines.
 std::string_view trimmed(std::string_view text);
 
 /// The parts of `text` between separators, trimmed; "a,,b" has three, "" has one.

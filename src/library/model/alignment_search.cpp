@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "core/text.hpp"
 #include "model/fold_evidence.hpp"
 #include "model/tuning.hpp"
 #include "motion/signal_names.hpp"

@@ -23,7 +23,7 @@ constexpr const auto& kWaterSearch = kModelTuning.water;
 
 constexpr std::size_t kSurge = 0, kSway = 1, kYaw = 5;  // velocity_axis()
 
-std::string tenths(double value) {
+std::string hundredths(double value) {
   return short_number(std::round(100.0 * value) / 100.0);
 }
 
@@ -234,10 +234,10 @@ std::string Current::text() const {
   const double towards = std::copysign(1.0, unit) * std::atan2(mean[1], mean[0]) / kRadPerDegree;
   const double whole = std::round(towards < 0.0 ? towards + 360.0 : towards);
   const std::string direction = short_number(whole == 360.0 ? 0.0 : whole) + "° of " + heading;
-  const std::string size = tenths(std::hypot(mean[0], mean[1])) + " m/s";
+  const std::string size = hundredths(std::hypot(mean[0], mean[1])) + " m/s";
   const auto [low, high] = speeds();
   return velocity.size() == 1 ? "a current of " + size + " towards " + direction
-                              : "a current of " + tenths(low) + " to " + tenths(high) +
+                              : "a current of " + hundredths(low) + " to " + hundredths(high) +
                                     " m/s, on average " + size + " towards " + direction;
 }
 

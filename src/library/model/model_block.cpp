@@ -8,6 +8,7 @@
 #include <limits>
 #include <string_view>
 
+#include "core/hash.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie {
@@ -301,12 +302,9 @@ std::size_t BlockLayout::slot_words() const {
 
 std::uint64_t block_identity(std::span<const std::string> input_names,
                              std::span<const std::string> target_names, const TermSet& term_set) {
-  std::uint64_t hash = 0xcbf2'9ce4'8422'2325;
+  std::uint64_t hash = fnv1a("");
   const auto add = [&](std::string_view text) {
-    for (const char letter : text) {
-      hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100'0000'01b3;
-    }
-    hash = (hash ^ 0xffU) * 0x100'0000'01b3;  // no byte of UTF-8: ends the text
+    hash = fnv1a("\xff", fnv1a(text, hash));  // no byte of UTF-8: ends the text
   };
   std::ranges::for_each(input_names, add);
   add("");

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/vector.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/learner/online_svr.hpp"
 #include "kelpie/motion/term_set.hpp"

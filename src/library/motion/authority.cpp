@@ -255,7 +255,7 @@ Allocation Authority::allocate(std::span<const double> wanted) const {
   return allocation;
 }
 
-std::string Authority::text(const DiagnosisNames& names) const {
+std::string Authority::text(const DiagnosisNames& names, std::string_view speed_unit) const {
   std::vector<std::string> parts;
   for (const ThrusterEffect& one : thrusters_) {
     if (std::abs(one.share - 1.0) >= kDiagnosis.least_share) {
@@ -270,7 +270,9 @@ std::string Authority::text(const DiagnosisNames& names) const {
   }
   text += ": " + join_text(parts, ", ") + " of nominal left";
   if (std::isfinite(held_current_)) {
-    text += "; holds a current of " + text_of(held_current_, 2) + " from ahead";
+    text += "; holds a current of " + text_of(held_current_, 2);
+    text += speed_unit.empty() ? "" : " " + std::string(speed_unit);
+    text += " from ahead";
   }
   if (lost_ < axes_.size()) {
     text += "; NEARLY NO AUTHORITY left in " + names.targets[lost_];

@@ -12,7 +12,6 @@
 #include "core/angle.hpp"
 #include "core/eigen.hpp"
 #include "core/normal_equations.hpp"
-#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "motion/output_error.hpp"

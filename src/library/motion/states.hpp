@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -9,6 +10,10 @@
 #include <vector>
 
 namespace kelpie {
+
+/// Names of the axes 0 to 5.
+inline constexpr std::array<std::string_view, 6> kAxisTexts{"surge", "sway",  "heave",
+                                                            "roll",  "pitch", "yaw"};
 
 /// The axis of a velocity by its name, in any case: 0 to 5 for u, v, w, p, q, r; surge, sway, heave
 /// (also surge_velocity, surge_speed, …); roll_rate, pitch_rate, yaw_rate; Vx, Vy, Vz, v_x, …; a

@@ -51,7 +51,7 @@ VelocityCheck::Faults VelocityCheck::judge(std::span<const double> x, double t,
   } else {
     in_stretch_ = false;
     const double apart_s = has_last_ ? t - changed_s : 0.0;
-    usual_s_ += kCheck.hold_memory * (std::min(apart_s, longest_hold_s()) - usual_s_);
+    usual_s_ += kCheck.hold_memory * (std::min(apart_s, frozen_after_s()) - usual_s_);
   }
   for (std::size_t i = 0; i < states_of(filter); ++i) {
     if (faults[i] == VelocityFault::none && filter.is_of_log(static_cast<Eigen::Index>(i))) {
@@ -71,7 +71,7 @@ VelocityFault VelocityCheck::judge_all(const VelocityFilter& filter, const Value
   if (is_zero && contradicted_) {
     return VelocityFault::zero;
   }
-  if ((contradicted_ || !is_still) && lasted_s > longest_hold_s()) {
+  if ((contradicted_ || !is_still) && lasted_s > frozen_after_s()) {
     contradicted_ = true;
     return VelocityFault::frozen;
   }
@@ -80,7 +80,7 @@ VelocityFault VelocityCheck::judge_all(const VelocityFilter& filter, const Value
 }
 
 // A driver may hold the values of a slower sensor.
-double VelocityCheck::longest_hold_s() const {
+double VelocityCheck::frozen_after_s() const {
   return std::max(kCheck.frozen_s, kCheck.usual_hold * usual_s_);
 }
 
@@ -89,7 +89,7 @@ double VelocityCheck::longest_hold_s() const {
 bool VelocityCheck::is_one_frozen(VelocityFilter& filter, const Values& now, std::size_t state,
                                   double t) const {
   if (!has_last_ || now[state] != last_[state] || equal_[state] < kCheck.least_equal ||
-      t - changed_s_[state] <= longest_hold_s()) {
+      t - changed_s_[state] <= frozen_after_s()) {
     return false;
   }
   const auto place = static_cast<Eigen::Index>(state);

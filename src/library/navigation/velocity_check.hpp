@@ -28,7 +28,7 @@ class VelocityCheck {
   static bool would_move(VelocityFilter& filter, const Values& now);
   VelocityFault judge_all(const VelocityFilter& filter, const Values& now, bool is_zero, double t);
   bool is_one_frozen(VelocityFilter& filter, const Values& now, std::size_t state, double t) const;
-  double longest_hold_s() const;
+  double frozen_after_s() const;
   void remember(const Values& now, double t);
 
   Values last_{};                                                     // values of the last samples

@@ -54,7 +54,7 @@ bool ChangeReporter::update_vehicle(const DynamicsModel& model) {
     return false;
   }
   const std::string text = finding_text(last, {plan_->inputs, plan_->targets});
-  vehicle_ = text.starts_with(kVehicleChanged) ? text : change_text(text);
+  vehicle_ = last.state == FindingState::none ? text : change_text(text);
   told_s_ = last.told_s;
   settled_ = last.settled;
   return true;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <concepts>
 
-#include "live/alignment.hpp"
 #include "live/tuning.hpp"
 
 namespace kelpie::live {

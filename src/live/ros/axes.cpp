@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "bag/topic_columns.hpp"
-#include "core/text.hpp"
 #include "motion/states.hpp"
 
 namespace kelpie::ros {
@@ -16,7 +15,6 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kEndings{"_dot",   "dot",  "_acceleration",
                                                    "_accel", "_acc", "_velocity_dot"};
-constexpr std::array<std::string_view, 6> kAngles{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 // "udot", "surge_acceleration", "yaw_rate_dot", "ax".
 std::optional<std::size_t> axis_of_name(std::string name) {
@@ -29,9 +27,9 @@ std::optional<std::size_t> axis_of_name(std::string name) {
       if (const auto axis = velocity_axis(stem)) {
         return axis;
       }
-      const auto* const found = std::ranges::find(kAngles, stem);
-      if (found != kAngles.end()) {
-        return static_cast<std::size_t>(found - kAngles.begin());
+      const auto* const found = std::ranges::find(kAxisTexts, stem);
+      if (found != kAxisTexts.end()) {
+        return static_cast<std::size_t>(found - kAxisTexts.begin());
       }
     }
   }

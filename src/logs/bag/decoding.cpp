@@ -9,13 +9,13 @@
 #include "bag/mavlink_messages.hpp"
 #include "bag/tuning.hpp"
 #include "bag/ulog_messages.hpp"
+#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::bag {
 namespace {
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
 constexpr std::int64_t kMicrosecondNs = 1'000;
 constexpr std::int64_t kMostWrapped = std::int64_t{1} << 40;  // in ms it still fits, in ns
 
@@ -46,7 +46,7 @@ std::vector<StampPart> header_stamp_of(const MessageType& type) {
     return leaf < type.leaves.size() && type.leaves[leaf].kind == kind;
   };
   return (is(sec, FieldKind::int32) || is(sec, FieldKind::uint32)) && is(nanosec, FieldKind::uint32)
-             ? std::vector<StampPart>{{sec, kNanoseconds}, {nanosec, 1}}
+             ? std::vector<StampPart>{{sec, kSecondNs}, {nanosec, 1}}
              : std::vector<StampPart>{};
 }
 

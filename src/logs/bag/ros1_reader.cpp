@@ -9,11 +9,10 @@
 
 #include "bag/chunked_reader.hpp"
 #include "bag/ros1_records.hpp"
+#include "core/seconds.hpp"
 
 namespace kelpie::bag {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 class Ros1Reader final : public ChunkedReader<Ros1Cursor> {
  public:
@@ -174,7 +173,7 @@ class Ros1Reader final : public ChunkedReader<Ros1Cursor> {
     }
     // The lower half are seconds, the upper one nanoseconds: no sum is beyond kLatestNs.
     const auto time = record.header.number<std::uint64_t>("time");
-    const std::int64_t time_ns = static_cast<std::int64_t>(time & UINT32_MAX) * kSecond +
+    const std::int64_t time_ns = static_cast<std::int64_t>(time & UINT32_MAX) * kSecondNs +
                                  static_cast<std::int64_t>(time >> 32U);
     message = {.topic = connection->second.topic,
                .receive_ns = time_ns,

@@ -13,8 +13,6 @@
 
 #include "core/angle.hpp"
 #include "core/quantile.hpp"
-#include "core/text.hpp"
-#include "kelpie/core/error.hpp"
 #include "log/tuning.hpp"
 #include "motion/states.hpp"
 

@@ -101,7 +101,7 @@ class PoseWindowSearch {
     return step_s;
   }
   double first_s() const {
-    double first = 0.0;
+    double first = -std::numeric_limits<double>::infinity();
     for (const std::string& name : plan_.pose->sources()) {
       const Signal& signal = signals_[plan_.source(name)];
       first = std::max(first, signal.times_s.empty() ? 0.0 : signal.times_s.front());

@@ -12,7 +12,6 @@
 
 #include "bag/open_bag.hpp"
 #include "core/seconds.hpp"
-#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "log/held_table.hpp"

@@ -16,7 +16,6 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/tuning.hpp"
-#include "core/text.hpp"
 #include "file/atomic_file.hpp"
 #include "fleet/log_pattern.hpp"
 #include "health/card.hpp"
@@ -26,7 +25,6 @@
 #include "kelpie/core/error.hpp"
 #include "motion/states.hpp"
 #include "report/health_report.hpp"
-#include "study/alignment.hpp"
 
 namespace kelpie::cli {
 namespace {

@@ -23,7 +23,6 @@
 #include "report/sampling_table.hpp"
 #include "study/alignment.hpp"
 #include "study/baselines.hpp"
-#include "study/current.hpp"
 #include "study/identification.hpp"
 
 namespace kelpie::cli {

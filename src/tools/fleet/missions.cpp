@@ -9,6 +9,7 @@
 #include <map>
 #include <system_error>
 
+#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "file/crc32.hpp"
 #include "kelpie/core/error.hpp"
@@ -18,15 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
-
 // Adds the file's size, and its time where that is the latest.
 void take_stamp(const fs::path& file, Mission& mission) {
   struct stat status = {};
   if (::stat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode)) {
     mission.bytes += static_cast<std::uintmax_t>(status.st_size);
     mission.changed_ns = std::max<std::int64_t>(
-        mission.changed_ns, status.st_mtim.tv_sec * kNanoseconds + status.st_mtim.tv_nsec);
+        mission.changed_ns, status.st_mtim.tv_sec * kSecondNs + status.st_mtim.tv_nsec);
   }
 }
 

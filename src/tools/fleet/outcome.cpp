@@ -18,7 +18,7 @@ using file::Json;
 using file::JsonNode;
 using file::number;
 
-constexpr double kLargest = 1e100;  // that JsonNode reads
+constexpr double kMostCounted = 9007199254740992.0;  // 2^53: exact in JSON
 
 // Where each measure stands in an axis' JSON.
 struct Place {
@@ -47,7 +47,7 @@ AxisOutcome axis_outcome(const study::AxisResult& axis) {
        sticks.least_squares.r2_final, sticks.least_squares.prequential_r2, sticks.mean.r2_final,
        sticks.mean.prequential_r2, sticks.last_value.prequential_r2}};
   for (double& value : outcome.values) {
-    value = std::clamp(value, -kLargest, kLargest);
+    value = std::clamp(value, -JsonNode::kLargest, JsonNode::kLargest);
   }
   return outcome;
 }
@@ -72,7 +72,7 @@ AxisOutcome read_axis(const JsonNode& node) {
 
 std::size_t read_count(const JsonNode& node) {
   const double value = node.number();
-  node.require(value >= 0.0, "a number that isn't negative");
+  node.require(value >= 0.0 && value <= kMostCounted, "is no count");
   return static_cast<std::size_t>(value);
 }
 
@@ -96,6 +96,7 @@ Outcome outcome_of(const study::StreamResult& stream, double duration_s) {
                   .duration_s = duration_s,
                   .memory_bytes = stream.memory_bytes,
                   .findings = study::diagnosis_lines(stream),
+                  .left = study::left_text(stream),
                   .axes = {},
                   .times = {}};
   std::ranges::transform(stream.axes, std::back_inserter(outcome.axes), axis_outcome);
@@ -122,6 +123,7 @@ Json outcome_json(const Outcome& outcome) {
           {"duration_s", number(outcome.duration_s)},
           {"memory_bytes", outcome.memory_bytes},
           {"findings", outcome.findings},
+          {"left", outcome.left},
           {"axes", file::list(outcome.axes, axis_json)}};
 }
 
@@ -134,6 +136,9 @@ Outcome read_outcome(const JsonNode& node) {
   outcome.memory_bytes = read_count(node["memory_bytes"]);
   for (const JsonNode& finding : node["findings"].items()) {
     outcome.findings.push_back(finding.text());
+  }
+  if (node.json().contains("left")) {  // a study of an earlier version has it among the findings
+    outcome.left = node["left"].text();
   }
   for (const JsonNode& axis : node["axes"].items()) {
     outcome.axes.push_back(read_axis(axis));

@@ -55,6 +55,7 @@ struct Outcome {
   double duration_s = 0.0;  ///< of the log
   std::size_t memory_bytes = 0;
   std::vector<std::string> findings;  ///< changes of the vehicle, in words (howto/diagnosis.md)
+  std::string left;                   ///< what the thrusters can do after them, in words
   std::vector<AxisOutcome> axes;
   Times times;
 };

@@ -9,12 +9,11 @@
 #include <utility>
 
 #include "core/quantile.hpp"
+#include "core/seconds.hpp"
 #include "fleet/tuning.hpp"
 
 namespace kelpie::fleet {
 namespace {
-
-constexpr double kSecondsPerHour = 3600.0;
 
 // What a vehicle's runs leave until all of them are there.
 struct AxisRuns {
@@ -147,7 +146,7 @@ class Summariser {
     if (is_first_split && run.front()) {
       vehicle_->summary.hours += run.front()->duration_s / kSecondsPerHour;
       if (!run.front()->findings.empty()) {
-        vehicle_->summary.findings.push_back({mission, run.front()->findings});
+        vehicle_->summary.findings.push_back({mission, run.front()->findings, run.front()->left});
       }
     }
   }

@@ -64,6 +64,7 @@ struct LearnerTimes {
 struct MissionFindings {
   std::size_t mission = 0;
   std::vector<std::string> findings;
+  std::string left;  ///< as in Outcome
 };
 
 /// Summary of a vehicle.

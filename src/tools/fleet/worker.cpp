@@ -12,7 +12,6 @@
 #include "fleet/outcome.hpp"
 #include "fleet/tuning.hpp"
 #include "format/settings_file.hpp"
-#include "kelpie/core/error.hpp"
 #include "log/read_log.hpp"
 #include "study/learn.hpp"
 

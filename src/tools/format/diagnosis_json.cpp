@@ -49,7 +49,8 @@ Json finding_object(const Finding& finding, const DiagnosisNames& names) {
           {"explained", judged ? number(finding.explained) : Json(nullptr)}};
 }
 
-Json authority_object(const Authority& authority, const DiagnosisNames& names) {
+Json authority_object(const study::StreamResult& result, const DiagnosisNames& names) {
+  const Authority& authority = *result.diagnosis.authority;
   Json axes = Json::array();
   for (std::size_t i = 0; i < authority.axes().size(); ++i) {
     const AxisAuthority& axis = authority.axes()[i];
@@ -71,7 +72,7 @@ Json authority_object(const Authority& authority, const DiagnosisNames& names) {
                 {"astern", file::numbers(one.astern)},
                 {"astern_width", file::numbers(one.astern_width)}};
   };
-  return {{"text", authority.text(names)},
+  return {{"text", study::authority_text(result)},
           {"axes", axes},
           {"thrusters", file::list(authority.thrusters(), thruster)},
           {"singular_values", file::numbers(authority.singular_values())},
@@ -84,14 +85,14 @@ Json authority_object(const Authority& authority, const DiagnosisNames& names) {
 Json diagnosis_object(const study::StreamResult& result) {
   const std::vector<std::string> targets = study::target_names(result);
   const DiagnosisNames names{result.input_names, targets};
-  const std::optional<Authority>& authority = result.diagnosis.authority;
-  return {{"why_not", file::text_or_null(result.diagnosis.why_not)},
-          {"authority", authority ? authority_object(*authority, names) : Json(nullptr)},
-          {"findings",
-           file::list(result.diagnosis.findings,
-                      [&](const Finding& finding) { return finding_object(finding, names); })},
-          {"health", file::list(result.diagnosis.health,
-                                [&](const Cause& cause) { return cause_object(cause, names); })}};
+  return {
+      {"why_not", file::text_or_null(result.diagnosis.why_not)},
+      {"authority", result.diagnosis.authority ? authority_object(result, names) : Json(nullptr)},
+      {"findings",
+       file::list(result.diagnosis.findings,
+                  [&](const Finding& finding) { return finding_object(finding, names); })},
+      {"health", file::list(result.diagnosis.health,
+                            [&](const Cause& cause) { return cause_object(cause, names); })}};
 }
 
 }  // namespace kelpie::format

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "file/content.hpp"
 #include "file/crc32.hpp"
-#include "file/tuning.hpp"
 
 namespace kelpie::format {
 namespace {

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "core/quantile.hpp"
-#include "health/tuning.hpp"
 #include "kelpie/core/error.hpp"
 
 namespace kelpie::health {
@@ -51,20 +50,14 @@ double day_from(const std::smatch& parts) {
          (60.0 * number(4) + number(5)) / kMinutesPerDay;
 }
 
-// Two significant digits of the error; as many places of the value.
-std::string rounded(double value, double error, const char* sign) {
-  const int places =
-      error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 9) : 2;
-  return sign[0] == '+' ? fmt::format("{:+.{}f}", value, places)
-                        : fmt::format("{:.{}f}", value, places);
-}
-
+// Per cent of the factor before, or of 1 where the factor before may be 0 (a dead thruster).
 double percent_of(const Change& change) {
-  return 100.0 / change.course.before.value;
+  const Estimate& before = change.course.before;
+  return 100.0 / (before.value > kNormal90 * before.error ? before.value : 1.0);
 }
 
-std::string with_unit(double value, double error, const char* sign, const std::string& unit) {
-  return fmt::format("{} {}", rounded(value, error, sign), unit);
+std::string signed_text(double value, double error) {
+  return (value < 0.0 ? "" : "+") + rounded(value, error);
 }
 
 }  // namespace
@@ -100,7 +93,7 @@ Series series_of(const HealthTable& table, std::size_t quantity) {
   Series series;
   for (std::size_t i = 0; i < table.episodes.size(); ++i) {
     const Estimate& estimate = table.estimates[i][quantity];
-    if (std::isfinite(estimate.value) && estimate.error > 0.0) {
+    if (std::isfinite(estimate.value) && estimate.error > 0.0 && std::isfinite(estimate.error)) {
       series.days.push_back(table.episodes[i].day);
       series.estimates.push_back(estimate);
     }
@@ -128,17 +121,23 @@ std::string day_text(const HealthCard& card, double day) {
                      static_cast<int>(date.year()));
 }
 
+std::string rounded(double value, double error) {
+  const int places =
+      error > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 9) : 2;
+  return fmt::format("{}{:.{}f}", value < 0.0 ? "−" : "", std::abs(value), places);
+}
+
 std::string change_size(const HealthCard& card, const Change& change) {
   const Quantity& quantity = card.table.quantities[change.quantity];
   const Estimate& size = change.course.change;
   const double half = kNormal90 * size.error;
   if (quantity.unit.empty()) {
     const double percent = percent_of(change);
-    return fmt::format("{} % ± {} %", rounded(percent * size.value, percent * half, "+"),
-                       rounded(percent * half, percent * half, ""));
+    return fmt::format("{} % ± {} %", signed_text(percent * size.value, percent * half),
+                       rounded(percent * half, percent * half));
   }
-  return fmt::format("{} ± {}", rounded(size.value, half, "+"),
-                     with_unit(half, half, "", quantity.unit));
+  return fmt::format("{} ± {} {}", signed_text(size.value, half), rounded(half, half),
+                     quantity.unit);
 }
 
 std::string change_text(const HealthCard& card, const Change& change) {
@@ -154,10 +153,10 @@ std::string change_text(const HealthCard& card, const Change& change) {
                                  day_text(card, course.since_day));
   if (course.kind == CourseKind::drift) {
     const double half = kNormal90 * course.rate.error;
-    text += ", " + (quantity.unit.empty()
-                        ? fmt::format("{} % a day", rounded(percent_of(change) * course.rate.value,
-                                                            percent_of(change) * half, ""))
-                        : with_unit(course.rate.value, half, "", quantity.unit + " a day"));
+    const bool is_factor = quantity.unit.empty();
+    const double scale = is_factor ? percent_of(change) : 1.0;
+    text += fmt::format(", {} {} a day", rounded(scale * course.rate.value, scale * half),
+                        is_factor ? "%" : quantity.unit);
   } else if (course.kind == CourseKind::step) {
     text += ", at once";
   } else {

@@ -46,6 +46,10 @@ bool is_found(const Course& course);
 /// "3 March 2026", or the name of the episode at this day.
 std::string day_text(const HealthCard& card, double day);
 
+/// Two significant digits of the error, as many places of the value, and a true minus sign:
+/// "−2.44".
+std::string rounded(double value, double error);
+
 /// A size with its 90 % interval: "+11 % ± 4 %" of a factor, else "+0.02 ± 0.01 m/s²".
 std::string change_size(const HealthCard& card, const Change& change);
 

@@ -3,7 +3,6 @@
 #include "core/quantile.hpp"
 
 #include "file/json.hpp"
-#include "health/tuning.hpp"
 
 namespace kelpie::health {
 namespace {

@@ -12,7 +12,6 @@
 namespace kelpie::health {
 
 inline constexpr double kSecondsPerDay = 86400.0;
-inline constexpr double kSecondsPerHour = 3600.0;
 
 /// A part of a log that is judged by itself: a dive, or a whole log.
 struct Episode {

@@ -102,12 +102,10 @@ void cut(const std::vector<DriveLog>& logs, const DriveInputs& inputs, HealthTab
   }
 }
 
-constexpr std::array<const char*, 6> kAxisNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
-
 Quantity quantity_of(const Effect& effect, const std::vector<std::string>& names) {
   const std::string& column = names[effect.input];
   const std::optional<std::size_t> axis = velocity_axis(column);
-  const std::string name = axis ? kAxisNames.at(*axis) : column;
+  const std::string name = axis ? std::string(kAxisTexts.at(*axis)) : column;
   switch (effect.kind) {
     case EffectKind::damping:
       return {name + " drag", ""};

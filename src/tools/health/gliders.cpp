@@ -12,6 +12,7 @@
 #include <span>
 
 #include "core/quantile.hpp"
+#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "health/tuning.hpp"
 #include "kelpie/core/error.hpp"

@@ -77,7 +77,7 @@ JournalReader::JournalReader(std::filesystem::path file, int flags)
 
 JournalReader::JournalReader(std::filesystem::path file, std::string_view kind,
                              const Header& header)
-    : JournalReader(std::move(file), O_RDONLY) {
+    : JournalReader(std::move(file), O_RDONLY | O_NONBLOCK) {
   read(kind, header);
 }
 
@@ -111,7 +111,7 @@ void Journal::take() const {
 
 // Returns the file's size.
 std::size_t JournalReader::read(std::string_view kind, const Header& header) {
-  const bool is_file = std::filesystem::is_regular_file(file_);  // to open a pipe might wait
+  const bool is_file = std::filesystem::is_regular_file(file_);  // to read a pipe might wait
   std::ifstream stream(is_file ? file_ : "", std::ios::binary);
   if (!stream.is_open()) {
     throw InputError({.file = file_.string()}, "cannot be read; a journal is needed");

@@ -24,21 +24,6 @@ using health::HealthCard;
 
 constexpr std::size_t kMostEpisodes = 60;  // of a table
 
-// With true minus signs, as all other tables have; hyphens in names stay.
-std::string with_minus(const std::string& text) {
-  std::string signs;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool begins = i == 0 || text[i - 1] == ' ' || text[i - 1] == '(';
-    const bool is_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
-    signs += text[i] == '-' && begins && is_digit ? "−" : std::string(1, text[i]);
-  }
-  return signs;
-}
-
-std::string change_words(const HealthCard& card, const Change& change) {
-  return with_minus(health::change_text(card, change));
-}
-
 std::string baseline_words(const HealthCard& card, const Change& change) {
   return change.baseline == 0
              ? ""
@@ -82,7 +67,7 @@ std::string quiet_text(const HealthCard& card) {
   for (const Change& change : card.changes) {
     if (change.baseline == 0 && change.course.kind == CourseKind::constant) {
       quiet.push_back(fmt::format("{} ({})", card.table.quantities[change.quantity].name,
-                                  with_minus(health::change_size(card, change))));
+                                  health::change_size(card, change)));
     }
   }
   return quiet.empty() ? "" : "No change: " + chart::list_text(quiet) + ".";
@@ -94,8 +79,7 @@ std::string value_text(const health::Quantity& quantity, const Estimate& estimat
   }
   const double scale = quantity.unit.empty() ? 100.0 : 1.0;
   const double half = scale * kNormal90 * estimate.error;
-  const int places = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6);
-  return with_minus(fmt::format("{:.{}f} ± {:.{}f}", scale * estimate.value, places, half, places));
+  return health::rounded(scale * estimate.value, half) + " ± " + health::rounded(half, half);
 }
 
 chart::TextTable episodes_view(const HealthCard& card) {
@@ -130,7 +114,7 @@ chart::TextTable changes_view(const HealthCard& card) {
   view.left = {0, 1, 2};
   for (const Change& change : card.changes) {
     view.rows.push_back({card.table.quantities[change.quantity].name,
-                         card.baselines[change.baseline].name, change_words(card, change),
+                         card.baselines[change.baseline].name, health::change_text(card, change),
                          fmt::format("{:.1f}", change.course.nats)});
   }
   view.notes.push_back(fmt::format(
@@ -181,7 +165,7 @@ std::string quantity_figure(const HealthCard& card, const Change& change) {
   if (health::is_found(change.course)) {
     figure.mark(change.course.since_day - first, "change");
   }
-  return figure.html(change_words(card, change) + ".");
+  return figure.html(health::change_text(card, change) + ".");
 }
 
 std::string health_figures(const HealthCard& card) {
@@ -208,7 +192,7 @@ std::string health_headline(const std::vector<HealthCard>& cards) {
     return has_too_few_episodes(cards.front()) ? "Too few episodes to tell a change."
                                                : "No significant change was found.";
   }
-  return change_words(cards.front(), *found.front()) + ".";
+  return health::change_text(cards.front(), *found.front()) + ".";
 }
 
 }  // namespace
@@ -219,7 +203,7 @@ std::string health_verdict(const std::vector<HealthCard>& cards) {
     text += chart::wrapped(chart::printable(span_text(card))) + "\n";
     const std::vector<const Change*> found = found_changes(card);
     for (const Change* change : found) {
-      text += chart::wrapped("  " + chart::printable(change_words(card, *change) +
+      text += chart::wrapped("  " + chart::printable(health::change_text(card, *change) +
                                                      baseline_words(card, *change))) +
               "\n";
     }
@@ -258,7 +242,7 @@ std::string health_html(const std::vector<HealthCard>& cards) {
   for (const HealthCard& card : cards) {
     opening += chart::paragraph("", span_text(card) + ".");
     for (const Change* change : found_changes(card)) {
-      const std::string news = change_words(card, *change) + baseline_words(card, *change);
+      const std::string news = health::change_text(card, *change) + baseline_words(card, *change);
       opening += news + "." == headline ? "" : chart::paragraph("", news + ".");
     }
     for (const std::string& remark : card.table.remarks) {

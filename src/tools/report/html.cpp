@@ -11,7 +11,6 @@
 
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
-#include "core/text.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/provenance.hpp"
 #include "report/stream_figures.hpp"

@@ -9,6 +9,7 @@
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
+#include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "file/json.hpp"
 #include "format/model_parts.hpp"
@@ -18,10 +19,8 @@
 namespace kelpie::report {
 namespace {
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
-
 std::string date_text(std::int64_t time_ns) {
-  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(time_ns / kNanoseconds));
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(time_ns / kSecondNs));
 }
 
 chart::TextTable topics_table(const bag::BagReport& report) {
@@ -133,14 +132,11 @@ file::Json mistake_json(const log::Mistake& mistake) {
 }
 
 file::Json look_json(const study::FirstLook& look) {
-  const auto number = [](double value) {
-    return std::isfinite(value) ? file::Json(value) : file::Json(nullptr);
-  };
   file::Json axes = file::Json::array();
   for (const study::FirstLook::Axis& axis : look.axes) {
     axes.push_back({{"target", axis.target},
-                    {"r2", number(axis.r2)},
-                    {"r2_without_commands", number(axis.r2_without_commands)}});
+                    {"r2", file::number(axis.r2)},
+                    {"r2_without_commands", file::number(axis.r2_without_commands)}});
   }
   return {{"rows", look.rows},
           {"held_out", look.held_out},

@@ -69,10 +69,12 @@ chart::TextTable trends_view(const StudyView& study);  ///< The tested trends.
 /// How many vehicles changed, in one sentence.
 std::string findings_headline(const StudyView& study);
 
+std::size_t findings_count(const StudyView& study);  ///< of all missions
+
 /// A row per vehicle with findings: missions with findings, and the last finding.
 chart::TextTable vehicle_findings_view(const StudyView& study);
 
-chart::TextTable findings_view(const StudyView& study);  ///< Missions with a changed vehicle.
+chart::TextTable findings_view(const StudyView& study);  ///< A row per finding.
 chart::TextTable worst_view(const StudyView& study);     ///< The worst runs of the first learner.
 chart::TextTable failures_view(const StudyView& study);  ///< Runs without a result.
 

@@ -269,17 +269,15 @@ std::string findings_headline(const StudyView& study) {
                            counted(vehicles.size(), "vehicle"));
 }
 
-namespace {
-
-// Of a mission; what the thrusters have left at its end comes after the findings and is none.
-std::string last_finding(const fleet::MissionFindings& mission) {
-  const auto found = std::find_if(
-      mission.findings.rbegin(), mission.findings.rend(),
-      [](const std::string& finding) { return !finding.starts_with("left at the end"); });
-  return found == mission.findings.rend() ? "–" : *found;
+std::size_t findings_count(const StudyView& study) {
+  std::size_t count = 0;
+  for (const VehicleSummary& vehicle : study.summary.vehicles) {
+    for (const fleet::MissionFindings& one : vehicle.findings) {
+      count += one.findings.size();
+    }
+  }
+  return count;
 }
-
-}  // namespace
 
 chart::TextTable vehicle_findings_view(const StudyView& study) {
   chart::TextTable table{
@@ -295,7 +293,7 @@ chart::TextTable vehicle_findings_view(const StudyView& study) {
       const fleet::MissionFindings& last = vehicle.findings.back();
       table.rows.push_back({cell_name(vehicle.name),
                             fmt::format("{} of {}", vehicle.findings.size(), vehicle.missions),
-                            last_finding(last), study.results.missions()[last.mission].mission});
+                            last.findings.back(), study.results.missions()[last.mission].mission});
     }
   }
   cut(table, all, "the first");
@@ -303,21 +301,22 @@ chart::TextTable vehicle_findings_view(const StudyView& study) {
 }
 
 chart::TextTable findings_view(const StudyView& study) {
-  chart::TextTable table{"Findings by mission", {"vehicle", "mission", "found"}, {}};
-  table.left = {0, 1, 2};
-  std::size_t all = 0;
+  chart::TextTable table{
+      "Findings by mission", {"vehicle", "mission", "found", "left at the end"}, {}};
+  table.left = {0, 1, 2, 3};
   for (const VehicleSummary& vehicle : study.summary.vehicles) {
     for (const fleet::MissionFindings& one : vehicle.findings) {
-      all += one.findings.size();
       for (const std::string& finding : one.findings) {
         if (table.rows.size() < kMostListed) {
-          table.rows.push_back(
-              {cell_name(vehicle.name), study.results.missions()[one.mission].mission, finding});
+          const bool is_last = &finding == &one.findings.back();
+          table.rows.push_back({cell_name(vehicle.name),
+                                study.results.missions()[one.mission].mission, finding,
+                                is_last ? one.left : ""});
         }
       }
     }
   }
-  cut(table, all, "the first");
+  cut(table, findings_count(study), "the first");
   return table;
 }
 

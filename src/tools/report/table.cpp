@@ -98,6 +98,9 @@ std::string axes_table(const study::StreamResult& result) {
   for (const std::string& line : study::diagnosis_lines(result)) {
     table.notes.push_back(line);
   }
+  if (const std::string left = study::left_text(result); !left.empty()) {
+    table.notes.push_back("left at the end: " + left);
+  }
   if (result.memory_bytes > 0) {
     table.notes.push_back(fmt::format("memory: {} for {} ax{}s",
                                       file::megabytes(result.memory_bytes), result.axes.size(),

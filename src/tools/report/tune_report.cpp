@@ -299,12 +299,13 @@ double gain_of(const study::TunedAxis& axis) {
   return axis.all.tuned - axis.all.base;
 }
 
+}  // namespace
+
 bool any_gain(const study::TuneResult& result) {
   return std::ranges::any_of(result.axes,
                              [](const study::TunedAxis& axis) { return gain_of(axis) > 0.0; });
 }
 
-// The gain in one sentence.
 std::string gain_sentence(const study::TuneResult& result) {
   std::vector<std::string> gained;
   bool judged = false;
@@ -321,6 +322,8 @@ std::string gain_sentence(const study::TuneResult& result) {
   return gained.empty() ? "No gain: keep the defaults. No settings drawn score clearly higher."
                         : "Tuned settings score higher: " + chart::list_text(gained) + ".";
 }
+
+namespace {
 
 // The trial of the chosen settings on the last round; null where they were not judged there.
 const TrialResult* chosen_trial(const study::TuneResult& result, std::size_t axis) {
@@ -383,7 +386,8 @@ std::string cheaper(const study::TuneResult& result, std::size_t axis,
   return &least == &best
              ? ""
              : fmt::format(
-                   "The preset {} scores {} with {} iterations of the solver per row; the best, {} "
+                   "The candidate {} scores {} with {} iterations of the solver per row; the best, "
+                   "{} "
                    "with {}.",
                    name_of(least, result, axis), chart::decimal(least.score),
                    chart::significant(least.iterations_per_row), chart::decimal(best.score),

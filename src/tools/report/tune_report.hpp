@@ -14,6 +14,11 @@ namespace kelpie::report {
 std::vector<chart::TextTable> tune_tables(const study::TuneResult& result);
 std::string tune_table(const study::TuneResult& result);  ///< tune_tables() for a terminal.
 
+/// Whether the settings of an axis score higher on all rows than those at the start; the gains of
+/// all axes in one sentence.
+bool any_gain(const study::TuneResult& result);
+std::string gain_sentence(const study::TuneResult& result);
+
 /// The number of logs with worse scores than the initial settings, and the worst log; empty: no
 /// log.
 std::string worse_text(const study::TuneResult& result);

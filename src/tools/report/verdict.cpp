@@ -166,6 +166,9 @@ chart::TextTable quality_table(const study::StreamResult& result) {
 
 std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
   std::vector<std::string> lines = study::diagnosis_lines(result);
+  if (const std::string left = study::left_text(result); !left.empty()) {
+    lines.push_back("left at the end: " + left);
+  }
   std::ranges::move(model_lines(result), std::back_inserter(lines));
   if (lines.empty()) {
     lines.emplace_back(result.diagnosis.why_not.empty() ? "no change of the vehicle was found"

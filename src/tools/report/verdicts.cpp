@@ -95,11 +95,9 @@ std::string tune_verdict(const study::TuneResult& result) {
                          .rows = {},
                          .left = {0},
                          .whole = true};
-  double most = 0.0;
   for (std::size_t i = 0; i < result.axes.size(); ++i) {
     const study::TunedAxis& axis = result.axes[i];
     const double gain = axis.all.tuned - axis.all.base;
-    most = std::fmax(most, gain);
     const double work = work_of(result, axis.name, study::settings_of(result.tuned, i));
     table.rows.push_back({chart::shortened(axis.name, chart::kLongestName),
                           chart::decimal(axis.all.base), chart::decimal(axis.all.tuned),
@@ -111,15 +109,11 @@ std::string tune_verdict(const study::TuneResult& result) {
                                  result.logs.size() == 1 ? "log" : "logs");
   if (result.interrupted) {
     text += "INTERRUPTED: the same command resumes the search\n";
-  } else if (most > 0.0) {
-    text +=
-        paragraph(fmt::format("Gain: the tuned settings score higher by up to {}. The best of "
-                              "many is partly lucky: see whether R² on held-out rows follows.",
-                              chart::decimal(most)));
   } else {
-    text += paragraph(
-        "No gain: keep the defaults. No settings drawn score clearly higher than "
-        "those that the search started from.");
+    text += paragraph(gain_sentence(result) +
+                      (any_gain(result) ? " The best of many is partly lucky: see whether R² on "
+                                          "held-out rows follows."
+                                        : ""));
   }
   return text + "\n" + chart::table_text(table) + paragraph(worse_text(result));
 }
@@ -135,9 +129,8 @@ std::string rounded(double error) {
 
 std::string rollout_verdict(const study::OpenLoopResult& result) {
   const study::OpenLoopScore& model = result.scores.front();
-  const auto held = std::ranges::max_element(result.scores, {}, [](const auto& score) {
-    return score.name.find("held") != std::string::npos;
-  });
+  const auto held =
+      std::ranges::find(result.scores, study::kVelocityHeld, &study::OpenLoopScore::name);
   chart::TextTable table{
       .title = {}, .head = {"after", "starts"}, .rows = {}, .left = {0}, .whole = true};
   for (std::size_t i = 0; i < result.states.size(); ++i) {
@@ -206,14 +199,15 @@ std::string study_verdict(const StudyView& study) {
   std::vector<std::string> sentences = study_sentences(study);
   std::string text = paragraph(sentences.front());
   const chart::TextTable findings = findings_view(study);
-  for (std::size_t i = 0; i < std::min(findings.rows.size(), kTuning.most_changes); ++i) {
+  const std::size_t shown = std::min(findings.rows.size(), kTuning.most_changes);
+  for (std::size_t i = 0; i < shown; ++i) {
     const std::vector<std::string>& row = findings.rows[i];
     text += paragraph(fmt::format("vehicle {}, {}: {}", row[0], row[1], row[2]));
   }
-  if (findings.rows.empty()) {
+  if (const std::size_t more = findings_count(study) - shown; shown == 0) {
     text += "vehicles: no cause of a change was found\n";
-  } else if (findings.rows.size() > kTuning.most_changes) {
-    text += fmt::format("and {} more findings\n", findings.rows.size() - kTuning.most_changes);
+  } else if (more > 0) {
+    text += fmt::format("and {} more findings\n", more);
   }
   for (std::size_t i = 1; i < sentences.size(); ++i) {
     text += paragraph(sentences[i]);

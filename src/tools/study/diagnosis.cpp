@@ -87,6 +87,16 @@ std::vector<std::string> target_names(const StreamResult& result) {
   return names;
 }
 
+std::string authority_text(const StreamResult& result) {
+  if (!result.diagnosis.authority) {
+    return "";
+  }
+  const bool in_metres =
+      std::ranges::find(result.axes, "m s^-2", &AxisResult::unit) != result.axes.end();
+  const std::vector<std::string> targets = target_names(result);
+  return result.diagnosis.authority->text({result.input_names, targets}, in_metres ? "m/s" : "");
+}
+
 std::vector<std::string> diagnosis_lines(const StreamResult& result) {
   const std::vector<std::string> targets = target_names(result);
   std::vector<std::string> lines;
@@ -94,15 +104,11 @@ std::vector<std::string> diagnosis_lines(const StreamResult& result) {
     lines.push_back(fmt::format("since {:.1f} s: {}", finding.since_s,
                                 finding_text(finding, {result.input_names, targets})));
   }
-  if (!lines.empty() && result.diagnosis.authority) {
-    std::string left = result.diagnosis.authority->text({result.input_names, targets});
-    const std::size_t current = left.find(" from ahead");
-    if (current != std::string::npos && result.axes.front().unit == "m s^-2") {
-      left.insert(current, " m/s");
-    }
-    lines.push_back("left at the end: " + left);
-  }
   return lines;
+}
+
+std::string left_text(const StreamResult& result) {
+  return result.diagnosis.findings.empty() ? "" : authority_text(result);
 }
 
 }  // namespace kelpie::study

@@ -28,7 +28,13 @@ ThrusterSinceStart since_the_start(const Cause& present, std::span<const Cause> 
 /// Names of the targets, for DiagnosisNames.
 std::vector<std::string> target_names(const StreamResult& result);
 
+/// Authority::text with the unit of speed, where the log tells units; empty without an authority.
+std::string authority_text(const StreamResult& result);
+
 /// One line for each finding: "since 512.0 s: th2 gives 48 % of its thrust (41 to 55 %)".
 std::vector<std::string> diagnosis_lines(const StreamResult& result);
+
+/// What the thrusters can do after findings: authority_text(); empty without a finding.
+std::string left_text(const StreamResult& result);
 
 }  // namespace kelpie::study

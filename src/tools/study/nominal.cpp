@@ -12,7 +12,6 @@
 #include "kelpie/core/random.hpp"
 #include "learner/triangular_fit.hpp"
 #include "model/snapshot.hpp"
-#include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "study/six_axes.hpp"
 #include "study/tuning.hpp"

@@ -351,7 +351,7 @@ std::vector<OpenLoopContender> open_loop_contenders(const TrainedModel& model, c
   if (states_first(loop)) {
     contenders.push_back({"recursive least squares", least_squares(loop, data, split)});
   }
-  contenders.push_back({"velocity held", hold_velocity(loop)});
+  contenders.push_back({std::string(kVelocityHeld), hold_velocity(loop)});
   return contenders;
 }
 

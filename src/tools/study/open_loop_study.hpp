@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kelpie/model/open_loop.hpp"
@@ -111,6 +112,8 @@ struct OpenLoopResult {
 
 /// The trivial predictor: every state keeps its value.
 OpenLoop hold_velocity(const OpenLoop& like);
+
+inline constexpr std::string_view kVelocityHeld = "velocity held";  ///< of hold_velocity()
 
 /// A predictor in open loop.
 struct OpenLoopContender {

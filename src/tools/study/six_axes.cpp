@@ -9,11 +9,9 @@
 #include <span>
 
 #include "core/quantile.hpp"
-#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
-#include "study/metrics.hpp"
 #include "study/tuning.hpp"
 #include "vehicle/dynamics.hpp"
 

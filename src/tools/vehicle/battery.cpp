@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/seconds.hpp"
+
 namespace kelpie::vehicle {
-namespace {
-
-constexpr double kSecondsPerHour = 3600.0;
-
-}  // namespace
+namespace {}  // namespace
 
 double thruster_power_w(const VehicleParameters& vehicle, const RotorSpeeds& speeds_rps,
                         double factor) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/states.hpp"
+
 namespace kelpie::vehicle {
 namespace {
 
@@ -136,9 +138,8 @@ const char* term_text(EngineTerm term) {
   return kTexts[static_cast<std::size_t>(term)];
 }
 
-const char* axis_text(std::size_t axis) {
-  constexpr std::array kTexts{"surge", "sway", "heave", "roll", "pitch", "yaw"};
-  return kTexts.at(axis);
+std::string axis_text(std::size_t axis) {
+  return std::string(kAxisTexts.at(axis));
 }
 
 Growth fastest_growth(const EngineRun& run, const EngineState& at) {

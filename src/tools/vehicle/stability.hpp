@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "vehicle/engine.hpp"
@@ -22,7 +23,7 @@ enum class EngineTerm : std::uint8_t {
 };
 
 const char* term_text(EngineTerm term);   ///< "added mass", …
-const char* axis_text(std::size_t axis);  ///< "surge" to "yaw"
+std::string axis_text(std::size_t axis);  ///< "surge" to "yaw"
 
 /// The fastest growing disturbance of a vehicle in an engine.
 struct Growth {

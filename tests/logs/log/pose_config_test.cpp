@@ -101,6 +101,16 @@ TEST_F(PoseConfig, TheWindowGrowsWithTheNoiseAndStaysNearTheBest) {
   }
 }
 
+TEST_F(PoseConfig, TheWindowIsTheSameBeforeTimeZero) {
+  PoseLog truth(300.0);
+  const std::optional<double> found =
+      read(truth.csv(0.02), kPlane + kCommands).sampling.pose_half_s;
+  for (PoseLog::Sample& sample : truth.samples) {
+    sample.t -= 400.0;
+  }
+  EXPECT_EQ(read(truth.csv(0.02), kPlane + kCommands).sampling.pose_half_s, found);
+}
+
 TEST_F(PoseConfig, TablesListsAndOptionsMeanTheSame) {
   const PoseLog truth(200.0);
   const std::string csv = truth.csv(0.01);

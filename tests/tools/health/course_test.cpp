@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "core/quantile.hpp"
 #include "health/card.hpp"
@@ -133,6 +134,21 @@ TEST(HealthCard, ReadsDates) {
   EXPECT_EQ(health::day_in_name("1970-01-03.csv"), 2.0);
   EXPECT_TRUE(std::isnan(health::day_in_name("sea035_10.csv")));
   EXPECT_TRUE(std::isnan(health::day_in_name("19709999.csv")));
+}
+
+// A thruster that was dead, and is repaired.
+TEST(HealthCard, ARatioToNothingIsToldOfTheNominal) {
+  RandomStream random(6, "course");
+  health::HealthTable table{.quantities = {{"th1 gain", ""}}, .episodes = {}, .estimates = {}};
+  for (int week = 0; week < 20; ++week) {
+    table.episodes.push_back({.mission = "m", .name = "m", .day = 7.0 * week, .hours = 1.0});
+    table.estimates.push_back({{(week < 10 ? -0.002 : 0.8) + 0.01 * random.normal(), 0.01}});
+  }
+  table.estimates[15][0].error = std::numeric_limits<double>::infinity();  // tells nothing
+  const health::HealthCard card = health::make_card("auv", true, table, {});
+  ASSERT_EQ(card.changes[0].course.kind, CourseKind::step);
+  EXPECT_TRUE(health::change_text(card, card.changes[0]).starts_with("th1 gain +80"))
+      << health::change_text(card, card.changes[0]);
 }
 
 }  // namespace

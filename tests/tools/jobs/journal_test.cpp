@@ -2,6 +2,7 @@
 #include "jobs/journal.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -152,6 +153,14 @@ TEST(Journal, IsReadWhileAnotherProcessWritesIt) {
   EXPECT_EQ(reader.result("first"), "1");
   EXPECT_EQ(reader.size(), 1U);
   EXPECT_EQ(content_of(file), content);
+}
+
+TEST(Journal, APipeIsRefusedWithoutWaitingForAWriter) {
+  const TemporaryFolder folder;
+  const auto file = folder / "journal.jsonl";
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_NE(message_of([&] { jobs::JournalReader(file, kKind, kHeader); }).find("cannot be read"),
+            std::string::npos);
 }
 
 // A killed run leaves the journals of its ranks.

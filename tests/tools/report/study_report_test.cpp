@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/study_report.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +12,8 @@
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "fleet/forged_study.hpp"
+#include "report/tuning.hpp"
+#include "report/verdicts.hpp"
 
 namespace kelpie::study_report_test {
 namespace {
@@ -28,6 +31,7 @@ ForgedStudy::Forged falling(const fleet::Combination& one) {
 struct Pages {
   std::string table;
   std::string page;
+  std::string verdict;
 };
 
 Pages pages_of(const ForgedStudy& study, const ForgedStudy::Forge& forge) {
@@ -35,7 +39,7 @@ Pages pages_of(const ForgedStudy& study, const ForgedStudy::Forge& forge) {
   const fleet::Results& results = *kept;
   const fleet::StudySummary summary = fleet::summarise(results);
   const report::StudyView view{results, summary};
-  return {report::study_table(view), report::study_html(view)};
+  return {report::study_table(view), report::study_html(view), report::study_verdict(view)};
 }
 
 TEST(StudyReport, SaysWhoIsBestAndWhatFallsAndFits) {
@@ -58,16 +62,32 @@ TEST(StudyReport, SaysWhoIsBestAndWhatFallsAndFits) {
   EXPECT_LT(pages.page.find("<td class=\"left\">since 50.0 s: th2 gives"), pages.page.find("<nav"));
 }
 
-TEST(StudyReport, TheLastFindingIsACauseNotWhatIsLeftAtTheEnd) {
+TEST(StudyReport, WhatIsLeftAtTheEndStandsBesideTheLastFinding) {
   ForgedStudy study;
   study.add_vehicle("one", 3);
   const Pages pages = pages_of(study, [](const fleet::Combination& one) {
     ForgedStudy::Forged forged = falling(one);
-    forged.outcome.findings.emplace_back("left at the end: th2 gives 48 % of its thrust: udot 0.8");
+    forged.outcome.left = "th2 gives 48 % of its thrust: udot 0.8";
     return forged;
   });
   EXPECT_LT(pages.page.find("<td class=\"left\">since 50.0 s: th2 gives"), pages.page.find("<nav"));
-  EXPECT_GT(pages.page.find("<td class=\"left\">left at the end"), pages.page.find("<nav"));
+  EXPECT_GT(pages.page.find("<td class=\"left\">th2 gives 48 % of its thrust: udot 0.8"),
+            pages.page.find("<nav"));
+}
+
+TEST(StudyReport, TheVerdictCountsAllFindingsOfALongStudy) {
+  constexpr std::size_t kMissions = 200;
+  ForgedStudy study;
+  study.add_vehicle("one", kMissions);
+  const Pages pages = pages_of(study, [](const fleet::Combination& one) {
+    ForgedStudy::Forged forged = falling(one);
+    forged.outcome.left = "all thrusters give their thrust";  // no finding
+    return forged;
+  });
+  EXPECT_NE(pages.verdict.find(
+                fmt::format("and {} more findings", kMissions - report::kTuning.most_changes)),
+            std::string::npos)
+      << pages.verdict;
 }
 
 TEST(StudyReport, ItsFiguresShowTheMedians) {
