@@ -100,6 +100,10 @@ class Diagnosis {
   /// rows begins a new one.
   void update(std::span<const double> x, std::span<const double> y, double t);
 
+  /// Discards the reference: earlier rows say nothing of the vehicle, as at rest. Findings stay; a
+  /// change under inspection is inspected to its end, and nothing is discarded.
+  void restart();
+
   /// The last kMostFindings changes, the oldest first.
   const std::vector<Finding>& findings() const;
   std::size_t found() const;                        ///< Number of changes since the start.

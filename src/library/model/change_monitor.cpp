@@ -471,6 +471,12 @@ void ChangeMonitor::restart() {
   samples_ = 0.0;
 }
 
+void ChangeMonitor::begin_again() {
+  restart();
+  std::ranges::fill(correlation_, ErrorCorrelation());
+  usual_ = 0.0;
+}
+
 void ChangeMonitor::visit(Archive& archive) {
   archive.part("fit", fit_);
   for (std::size_t a = 0; a < axes(); ++a) {

@@ -101,6 +101,9 @@ class ChangeMonitor {
 
   /// Another mechanism has found another vehicle: the monitor knows nothing of that vehicle.
   void restart();
+  /// The vehicle sets off: nothing so far is of a vehicle that moves, not even what errors are
+  /// usual.
+  void begin_again();
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -18,6 +18,7 @@
 #include "kelpie/motion/diagnosis.hpp"
 #include "model/answer.hpp"
 #include "model/change_monitor.hpp"
+#include "model/first_moves.hpp"
 #include "model/guarded_axis.hpp"
 #include "model/snapshot.hpp"
 #include "model/update_state.hpp"
@@ -27,7 +28,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "27";  // of the archive of all classes together
+constexpr const char* kStateVersion = "28";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -50,6 +51,12 @@ std::vector<std::size_t> other_inputs(std::span<const std::string> inputs,
     }
   }
   return others;
+}
+
+std::vector<std::size_t> commands_of(std::span<const std::string> inputs,
+                                     const ModelSettings& settings, std::size_t targets) {
+  return other_inputs(inputs, find_states(settings.shared.states, inputs, targets),
+                      attitude_for(settings.shared.terms, inputs), false);
 }
 
 // Whether the diagnosis stands by the thrust of a command as a cause of the change since `since_s`:
@@ -133,6 +140,7 @@ struct DynamicsModel::Parts {
 
   void order_axes();
   bool trusts_sample() const;
+  void restart_where_moved(std::span<const double> x);
   void monitor_change(std::span<const double> x, std::span<const double> y, double t);
   void believe_diagnosis();
   void apply_change(ChangeMonitor::Event event);
@@ -147,6 +155,7 @@ struct DynamicsModel::Parts {
   UpdateState state;
   std::vector<GuardedAxis> axes;
   RoomyVector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
+  FirstMoves moves;
   std::optional<ChangeMonitor> change;
   std::optional<SteadyPart> steady;
   std::optional<Diagnosis> diagnosis;
@@ -160,7 +169,8 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
     : input_names(std::move(inputs)),
       target_names(std::move(targets)),
       settings(std::move(model_settings)),
-      state(target_names.size()) {
+      state(target_names.size()),
+      moves(commands_of(input_names, settings, target_names.size())) {
   require_complete(input_names, target_names, settings);
   const std::size_t dimension = input_names.size();
   work = WorkLimit(settings.axes.size(), most_places(settings));
@@ -216,6 +226,20 @@ void DynamicsModel::Parts::order_axes() {
 bool DynamicsModel::Parts::trusts_sample() const {
   return std::ranges::all_of(axes, &GuardedAxis::trusted_last) &&
          std::ranges::none_of(state.decisions, is_refused);
+}
+
+// Nothing that was compared at rest is of the vehicle that sets off: not the usual errors, and not
+// the number of rows.
+void DynamicsModel::Parts::restart_where_moved(std::span<const double> x) {
+  if (!trusts_sample() || !moves.update(x)) {
+    return;
+  }
+  if (change) {
+    change->begin_again();
+  }
+  if (diagnosis) {
+    diagnosis->restart();
+  }
 }
 
 // All axes together show a change of the vehicle; the members of all axes follow.
@@ -313,6 +337,7 @@ void DynamicsModel::Parts::visit(Archive& archive) {
   }
   archive.part("clock", state.clock);
   archive.part("work", work);
+  archive.part("moves", moves);
   if (change) {
     archive.part("change", *change);
   }
@@ -377,6 +402,7 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
     }
   }
   state.share_changes([&](std::size_t i) -> OnlineRegressor& { return model.axes[i]; });
+  model.restart_where_moved(x);
   model.monitor_change(x, y, now);
   model.work.learned(state.crowded_out());
   for (GuardedAxis& axis : model.axes) {

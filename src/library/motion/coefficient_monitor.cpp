@@ -45,6 +45,16 @@ bool CoefficientMonitor::ready() const {
   return reference_.rows() >= std::max(usual, least);
 }
 
+void CoefficientMonitor::restart() {
+  reference_.clear();
+  kept_ = 0;
+  window_ = kWindows.size();
+  alarm_ = 0;
+  watched_ = 0;
+  std::ranges::fill(usual_, 1.0);
+  health_.clear();
+}
+
 void CoefficientMonitor::insert(const NormalEquations& block, double start_s, double end_s) {
   // Of a block without a gap: a pause lowers the rate of one block alone.
   rate_hz_ = std::max(kDiagnosis.rate_kept * rate_hz_, (block.rows() - 1.0) / (end_s - start_s));

@@ -33,6 +33,8 @@ class CoefficientMonitor {
 
   bool ready() const;  ///< Whether the reference has enough rows.
 
+  void restart();  ///< Discards all rows, and what is usual.
+
   /// Stores the newest block, with its first and last rows at these times [s], and starts over with
   /// the shortest window. Requires two rows or more, and start_s < end_s.
   void insert(const NormalEquations& block, double start_s, double end_s);

@@ -61,6 +61,7 @@ class Diagnosis::State {
         std::span<const std::size_t> others);
 
   void update(std::span<const double> x, std::span<const double> y, double t);
+  void restart();
   const std::vector<Finding>& findings() const { return findings_; }
   std::size_t found() const { return found_; }
   const CoefficientMonitor& monitor() const { return monitor_; }
@@ -148,6 +149,13 @@ void Diagnosis::State::update(std::span<const double> x, std::span<const double>
   }
   if (block_.rows() >= kDiagnosis.block_rows && t - block_start_ >= kDiagnosis.block_s) {
     close_block(t);
+    block_.clear();
+  }
+}
+
+void Diagnosis::State::restart() {
+  if (!looking_) {
+    monitor_.restart();
     block_.clear();
   }
 }
@@ -450,6 +458,10 @@ std::size_t Diagnosis::terms(std::size_t inputs, std::span<const std::size_t> st
 
 void Diagnosis::update(std::span<const double> x, std::span<const double> y, double t) {
   state_->update(x, y, t);
+}
+
+void Diagnosis::restart() {
+  state_->restart();
 }
 
 const std::vector<Finding>& Diagnosis::findings() const {
