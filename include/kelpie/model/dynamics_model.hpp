@@ -40,7 +40,8 @@ struct TrainedModel;
 class DynamicsModel final : public OnlineModel {
  public:
   /// Takes the scaling from the first samples. Throws InputError on settings that don't validate,
-  /// no inputs or more than kMostInputs, no targets, or settings for another number of targets.
+  /// no inputs or more than kMostInputs, no targets, two inputs or two targets of one name, or
+  /// settings for another number of targets.
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
                 const ModelSettings& settings);
 

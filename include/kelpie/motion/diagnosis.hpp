@@ -203,7 +203,8 @@ struct Allocation {
 class Authority {
  public:
   /// Throws InputError (diagnosis) before the diagnosis is ready, and (ranges) on none, an input
-  /// that is no thruster, a number that isn't finite, and a range without 0. Allocates.
+  /// that is no thruster or named twice, a number that isn't finite, and a range without 0.
+  /// Allocates.
   Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>& ranges);
 
   const std::vector<ThrusterEffect>& thrusters() const { return thrusters_; }

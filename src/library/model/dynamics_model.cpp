@@ -108,6 +108,13 @@ std::vector<double> coefficients_of(std::span<const Coefficient> known, const Te
   return values;
 }
 
+// Messages, findings and files tell columns by their names. A target may be called as an input.
+void require_distinct(std::string_view field, std::span<const std::string> names) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    require(std::find(names.begin(), name, *name) == name, field, "name '" + *name + "' twice");
+  }
+}
+
 void require_complete(std::span<const std::string> inputs, std::span<const std::string> targets,
                       const ModelSettings& settings) {
   require(
@@ -117,6 +124,8 @@ void require_complete(std::span<const std::string> inputs, std::span<const std::
   require(settings.axes.size() == targets.size(), "settings",
           "for " + std::to_string(settings.axes.size()) + " axes; there are " +
               std::to_string(targets.size()) + " targets");
+  require_distinct("inputs", inputs);
+  require_distinct("targets", targets);
   settings.validate();
 }
 

@@ -70,6 +70,8 @@ Authority::Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>
           "knows too little of the vehicle so far: it takes some minutes of driving");
   for (const CommandRange& range : ranges) {
     check_range(diagnosis, range);
+    require(std::ranges::count(ranges, range.input, &CommandRange::input) == 1, "ranges",
+            "name input " + std::to_string(range.input) + " twice");
     thrusters_.push_back(effect_of(diagnosis, range, half_.emplace_back()));
   }
   axes_.resize(diagnosis.states().size());

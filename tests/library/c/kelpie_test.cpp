@@ -167,6 +167,9 @@ TEST(InC, WrongCallsAreToldWhatIsWrong) {
   EXPECT_EQ(kelpie_create(few.data(), 65, kTargets.data(), 2, nullptr, &model), KELPIE_BAD_INPUT);
   EXPECT_STREQ(kelpie_last_error(), "inputs: 65 given; a model takes at most 64");
   EXPECT_EQ(kelpie_create(nullptr, 4, kTargets.data(), 2, nullptr, &model), KELPIE_BAD_INPUT);
+  const std::array twice{"udot", "udot"};
+  EXPECT_EQ(kelpie_create(kInputs.data(), 4, twice.data(), 2, nullptr, &model), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "targets: name 'udot' twice");
   EXPECT_EQ(model, nullptr);
 
   const Model good = made();
@@ -436,6 +439,9 @@ TEST(InC, AuthorityIsThatOfTheClass) {
   const std::array wrong{"n1", "n3"};
   EXPECT_EQ(create(wrong.data()), KELPIE_BAD_INPUT);
   EXPECT_STREQ(kelpie_last_error(), "thrusters: 'n3' is no input");
+  const std::array twice{"n1", "n1"};
+  EXPECT_EQ(create(twice.data()), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "ranges: name input 2 twice");
 }
 
 // A roll rate is measured, has no target, and is no thruster.

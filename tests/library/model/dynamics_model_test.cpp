@@ -350,6 +350,10 @@ TEST(DynamicsModel, RefusesWhatDoesNotFit) {
             "targets: none given; a model needs one or more");
   EXPECT_EQ(message_of<InputError>([&] { make(2, 2, 1); }),
             "settings: for 1 axes; there are 2 targets");
+  EXPECT_EQ(message_of<InputError>([&] { make(2, 1, 1); }), "inputs: name 'x' twice");
+  EXPECT_EQ(message_of<InputError>([&] { make(1, 2, 2); }), "targets: name 'y' twice");
+  const DynamicsModel of_itself({"x", "n"}, {"x"}, ModelSettings::from_preset("default", 1));
+  EXPECT_EQ(of_itself.axes(), 1U);
 }
 
 TEST(TrainedModel, PredictsWhatTheModelItWasTakenFromDid) {

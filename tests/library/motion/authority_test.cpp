@@ -324,6 +324,10 @@ TEST(Authority, RefusesRangesThatAreNone) {
             "ranges: have to contain 0, the command at rest, and more");
   EXPECT_EQ(message_of<InputError>([&] { const Authority no(learned, {}); }),
             "ranges: have to name a thruster or more");
+  EXPECT_EQ(message_of<InputError>([&] {
+              const Authority no(learned, {{3, -4.0, 4.0}, {4, -4.0, 4.0}, {3, -2.0, 2.0}});
+            }),
+            "ranges: name input 3 twice");
 }
 
 }  // namespace
