@@ -43,7 +43,8 @@ struct Prediction {
 /// counts over a stream.
 struct Decision {
   Verdict verdict = Verdict::accepted;
-  Prediction prediction{};  ///< by the model in service before the sample was learned
+  /// By the model in service before the sample was learned; NaN for an invalid sample.
+  Prediction prediction{};
   bool had_model = false;   ///< a model was in service; without one the prediction is a mean
   bool early = false;       ///< an early model (docs/method/committee.md)
   double similarity = 0.0;  ///< largest κ_SE to a sample in the buffer, before learning

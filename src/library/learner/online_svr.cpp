@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -165,6 +166,7 @@ void OnlineSvr::include(Decision& decision, std::span<const double> z, double y,
   decision.kkt_gap = progress_.status.kkt_gap;
   if (!valid_sample(z, nodes_->buffer.samples().dimension(), y, t)) {
     decision.verdict = Verdict::invalid;
+    decision.prediction.value = std::numeric_limits<double>::quiet_NaN();
     return;
   }
   if (progress_.unfinished && (progress_.waiting == kOnline.paper.most_waiting ||

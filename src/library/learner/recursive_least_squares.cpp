@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -90,6 +91,7 @@ Decision RecursiveLeastSquares::update(std::span<const double> x, double y, doub
   if (phi.size() == 0 || !std::isfinite(as_vector(phi).squaredNorm() + y * y) ||
       !std::isfinite(t)) {
     decision.verdict = Verdict::invalid;
+    decision.prediction.value = std::numeric_limits<double>::quiet_NaN();
     status_.tally.add(decision);
     return decision;
   }

@@ -2,6 +2,7 @@
 #include "model/scaled.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -35,7 +36,9 @@ Scaled::Scaled(std::size_t inputs, const SharedSettings& settings, TermSet terms
 Decision Scaled::update(std::span<const double> x, double y, double t) {
   if (!valid_sample(x, scale_.inputs(), y, t)) {
     ++invalid_;
-    return {.verdict = Verdict::invalid, .kkt_gap = learner().status().kkt_gap};
+    return {.verdict = Verdict::invalid,
+            .prediction = {.value = std::numeric_limits<double>::quiet_NaN()},
+            .kkt_gap = learner().status().kkt_gap};
   }
   if (scaling() == nullptr) {
     return hold_back(x, y, t);

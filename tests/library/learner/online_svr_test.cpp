@@ -133,9 +133,10 @@ TEST(OnlineSvr, ABadSampleIsTurnedAwayAndChangesNothing) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(learner.update(std::vector{nan, 0.0}, 0.0, 99.0).verdict, Verdict::invalid);
   EXPECT_EQ(learner.update(here, infinity, 99.0).verdict, Verdict::invalid);
+  EXPECT_TRUE(std::isnan(learner.update(here, nan, 99.0).prediction.value));
   EXPECT_EQ(learner.update(here, 0.0, nan).verdict, Verdict::invalid);
   EXPECT_EQ(learner.update(std::vector{1.0}, 0.0, 99.0).verdict, Verdict::invalid);
-  EXPECT_EQ(learner.status().tally.invalid, 4);
+  EXPECT_EQ(learner.status().tally.invalid, 5);
   EXPECT_EQ(learner.predict(here), before);
 }
 
