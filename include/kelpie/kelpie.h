@@ -52,7 +52,8 @@ enum { KELPIE_MOST_INPUTS = 64, KELPIE_MOST_TARGETS = 64 };
  * their names: reference/settings.md, `states`. `settings` has lines `name = value` for settings
  * that differ from their defaults, with one value for all targets, or values for each target
  * separated by commas; the line `preset = name` gives the defaults. `settings` may be null.
- * Allocates all memory of the model, except as update() of kelpie::DynamicsModel says.
+ * Two inputs or two targets of one name are KELPIE_BAD_INPUT. Allocates all memory of the model,
+ * except as update() of kelpie::DynamicsModel says.
  */
 kelpie_status kelpie_create(const char* const* inputs, size_t input_count,
                             const char* const* targets, size_t target_count, const char* settings,
@@ -81,7 +82,7 @@ typedef enum kelpie_verdict {
 
 /** The outcome of a sample for one axis; kelpie::Decision has further fields. */
 typedef struct kelpie_decision {
-  double predicted; /**< the prediction before the sample was learned */
+  double predicted; /**< the prediction before the sample was learned; NaN: invalid */
   double lower;     /**< the interval around the prediction; infinite without a promised share */
   double upper;     /**< the upper end */
   double changed_since; /**< with `changed`: when errors began to grow */
@@ -284,8 +285,10 @@ typedef enum kelpie_velocity_fault {
 } kelpie_velocity_fault;
 
 /** Makes an estimator with a copy of the model so far, to be freed by kelpie_reckoning_free().
- *  `planar`: not 0 where the first three velocities are surge, sway and yaw rate. KELPIE_BAD_INPUT
- *  where the model isn't ready or doesn't know its velocities. */
+ *  `planar`: not 0 where the first three velocities are surge, sway and yaw rate. Roll, pitch and
+ *  yaw rate, by their names, are a gyro's, all other velocities the velocity log's.
+ *  KELPIE_BAD_INPUT where the model isn't ready or doesn't know its velocities, and on `planar`
+ *  where their names say otherwise. */
 kelpie_status kelpie_reckoning_create(const kelpie_model* model, int planar,
                                       kelpie_reckoning** reckoning);
 
@@ -328,7 +331,7 @@ typedef struct kelpie_axis_authority {
 
 /** Makes an authority for thrusters (names of inputs) with commands from `least` to `most`, to be
  *  freed by kelpie_authority_free(). KELPIE_BAD_INPUT before the model has learned for some
- *  minutes, on an input that is no thruster, and on a range without 0. */
+ *  minutes, on an input that is no thruster or named twice, and on a range without 0. */
 kelpie_status kelpie_authority_create(const kelpie_model* model, const char* const* thrusters,
                                       const double* least, const double* most, size_t count,
                                       kelpie_authority** authority);

@@ -23,15 +23,17 @@ class DeadReckoning:
     ----------
     model : a fitted DynamicsModel, or the path of a model.json. The model is copied.
     planar : the first three velocities are surge, sway and yaw rate: estimates position, heading
-        and current too.
+        and current too. Default: by their names; three velocities without usual names are.
     current : standard deviation of the current at the start [m/s]; 0: no current.
     practice_s : duration of outages simulated while velocities are measured [s]; 0: none.
     between : "linear" or "held", how commands change between samples.
     step_s : longest step of the integrator [s].
     checks : recognises repeated values and exact zeros of the velocity log (faults).
+
+    Roll, pitch and yaw rate are a gyro's, by their names; the velocity log measures the others.
     """
 
-    def __init__(self, model: _Model, *, planar: bool = True, current: float = 0.1,
+    def __init__(self, model: _Model, *, planar: Optional[bool] = None, current: float = 0.1,
                  practice_s: float = 20.0, between: str = "linear", step_s: float = 0.25,
                  checks: bool = True) -> None:
         if between not in ("linear", "held"):
@@ -80,7 +82,7 @@ class DeadReckoning:
 
     @property
     def silent_s(self) -> float:
-        """Time since a velocity except the yaw rate was measured [s]."""
+        """Time since the velocity log measured a velocity [s]."""
         return self._reckoning.silent_s
 
     @property
@@ -95,7 +97,8 @@ class DeadReckoning:
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Way since the start of the outage, in the frame of heading 0 [m], (2,)."""
+        """Way since the start of the outage, in the frame of heading 0 [m], (2,); 0 with planar
+        off."""
         return np.array(self._reckoning.position)
 
     @property

@@ -175,7 +175,7 @@ class DeadReckoning:
     def __init__(
         self,
         model: TrainedModel,
-        planar: bool,
+        planar: Optional[bool],
         current_m_s: float,
         practice_s: float,
         held: bool,

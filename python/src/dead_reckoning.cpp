@@ -3,25 +3,32 @@
 
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bindings.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "navigation/named_settings.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {
 namespace {
 
-DeadReckoning make_reckoning(const TrainedModel& model, bool planar, double current_m_s,
-                             double practice_s, bool held, double step_s, bool checks) {
-  return DeadReckoning(open_loop(model, OpenLoopPart::steady),
-                       {.step_s = step_s,
-                        .between = held ? CommandPath::held : CommandPath::linear,
-                        .planar = planar,
-                        .current_m_s = current_m_s,
-                        .practice_s = practice_s,
-                        .checks = checks});
+DeadReckoning make_reckoning(const TrainedModel& model, std::optional<bool> planar,
+                             double current_m_s, double practice_s, bool held, double step_s,
+                             bool checks) {
+  const OpenLoop loop = open_loop(model, OpenLoopPart::steady);
+  DeadReckoningSettings settings = named_settings(loop);
+  // Columns without names are x0, x1, x2: three velocities are those of the plane.
+  const bool by_default = settings.planar || (loop.states.size() == 3 && may_be_planar(loop));
+  settings.step_s = step_s;
+  settings.between = held ? CommandPath::held : CommandPath::linear;
+  settings.planar = planar.value_or(by_default);
+  settings.current_m_s = current_m_s;
+  settings.practice_s = practice_s;
+  settings.checks = checks;
+  return DeadReckoning(loop, settings);
 }
 
 void update(DeadReckoning& reckoning, const Array& x, double t, const Array& covariance) {

@@ -107,3 +107,31 @@ def test_goes_on_with_a_later_model(learned):
     other = kelpie.DynamicsModel(buffer=100, rate=4.0, states="x0,x1")
     with pytest.raises(ValueError):
         reckoning.use(other.fit(x[:1200], x[:1200, :2]))
+
+
+def named(x, a, velocities):
+    model = kelpie.DynamicsModel(inputs=[*velocities, "n0", "n1", "n2"], buffer=60, rate=4.0)
+    return model.fit(x[:1200], a[:1200])
+
+
+def test_names_of_velocities_tell_the_plane_and_the_gyro():
+    t, x, a = drive(1600)
+    model = named(x, a, ["u", "w", "r"])
+    with pytest.raises(ValueError, match="planar: needs surge, sway and yaw rate"):
+        kelpie.DeadReckoning(model, planar=True)
+    reckoning = kelpie.DeadReckoning(model)
+    for k in range(1000, 1200):
+        reckoning.update(x[k], t[k])
+    for k in range(1200, 1280):
+        row = x[k].copy()
+        row[:2] = 0.0
+        reckoning.update(row, t[k])
+    assert reckoning.faults == ["zero", "zero", "none"]
+    assert reckoning.silent_s == pytest.approx(20.0)
+    assert reckoning.velocity == pytest.approx(x[1279, :3], abs=0.05)
+    assert reckoning.heading == 0.0 and not reckoning.position.any(), "heave is no sway"
+    model = named(x, a, ["u", "v", "r"])
+    reckoning = kelpie.DeadReckoning(model)
+    for k in range(1000, 1200):
+        reckoning.update(x[k], t[k])
+    assert reckoning.heading != 0.0

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct OpenLoop {
   /// Share of each predicted change of velocity to believe, 0 to 1, by age; empty: all.
   std::vector<ByAge> kept{};
   AttitudeMotion attitude{};  ///< integrated in a rollout beside the velocities
+  /// Axis of each velocity by its name, 0 to 5 for u, v, w, p, q, r; empty: names aren't known.
+  std::vector<std::optional<std::size_t>> axes{};
 };
 
 /// Parts of a learned model in open loop.

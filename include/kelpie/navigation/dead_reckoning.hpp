@@ -19,7 +19,7 @@ struct DeadReckoningSettings {
   double step_s = 0.25;  ///< s, longest step of the integrator
   CommandPath between = CommandPath::linear;
   /// The first three states are surge, sway [m/s] and yaw rate [rad/s]: estimates position, heading
-  /// and current too.
+  /// and current too. Refused where a name says otherwise (OpenLoop::axes).
   bool planar = true;
   /// Standard deviation of the current [m/s] at the start; 0: no current.
   double current_m_s = 0.1;
@@ -28,7 +28,7 @@ struct DeadReckoningSettings {
   /// Duration of simulated outages [s] while velocities are measured; 0: none.
   double practice_s = 20.0;
   /// Velocities measured by a gyro of their own, apart from the velocity log; in planar motion the
-  /// yaw rate (2) always is.
+  /// yaw rate (2) always is. Empty: roll, pitch and yaw rate by name, beside other velocities.
   std::vector<std::size_t> rates{};
   /// Whether repeated values and exact zeros are recognised (VelocityFault).
   bool checks = true;
@@ -100,7 +100,8 @@ struct Drift {
 /// in the constructor and in copies only. One thread at a time.
 class DeadReckoning {
  public:
-  /// Throws InputError on settings that don't validate, and more than six states.
+  /// Throws InputError on settings that don't validate, on more than six states, and (planar) where
+  /// the names of the first three velocities aren't those of surge, sway and yaw rate.
   explicit DeadReckoning(const OpenLoop& model, const DeadReckoningSettings& settings = {});
   ~DeadReckoning();
   DeadReckoning(const DeadReckoning& other);                 ///< With a model of its own.

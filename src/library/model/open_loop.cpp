@@ -57,6 +57,7 @@ OpenLoop open_loop(const TrainedModel& model, OpenLoopPart part) {
       throw InputError(axis.name, "cannot be rolled out: " + reason_against(model));
     }
     loop.states.push_back(steady.state);
+    loop.axes.push_back(velocity_axis(model.input_names[steady.state]));
     loop.error.push_back(steady.error);
     loop.error_time_s.push_back(steady.error_time_s);
     loop.noise.push_back(steady.noise);

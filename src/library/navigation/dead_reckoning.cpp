@@ -9,6 +9,7 @@
 
 #include "core/angle.hpp"
 #include "kelpie/core/error.hpp"
+#include "navigation/named_settings.hpp"
 #include "navigation/practice.hpp"
 #include "navigation/tuning.hpp"
 #include "navigation/velocity_check.hpp"
@@ -18,6 +19,7 @@ namespace kelpie {
 namespace {
 
 constexpr const auto& kChoice = kNavigationTuning.choice;
+constexpr const char* kPlanarNeeds = "needs surge, sway and yaw rate as the first three velocities";
 
 using Index = Eigen::Index;
 
@@ -297,8 +299,7 @@ std::string_view fault_name(VelocityFault fault) {
 
 void DeadReckoningSettings::validate(std::size_t states) const {
   require(step_s > 0.0 && std::isfinite(step_s), "step", "has to be > 0 s");
-  require(!planar || states >= 3, "planar",
-          "needs surge, sway and yaw rate as the first three velocities");
+  require(!planar || states >= 3, "planar", kPlanarNeeds);
   require(current_m_s >= 0.0 && std::isfinite(current_m_s), "current", "has to be >= 0 m/s");
   require(current_wander >= 0.0 && std::isfinite(current_wander), "current_wander",
           "has to be >= 0 m/s/√s");
@@ -312,7 +313,12 @@ DeadReckoning::DeadReckoning(const OpenLoop& model, const DeadReckoningSettings&
   require(model.states.size() <= VelocityFilter::kMostVelocities, "states",
           "of dead reckoning are at most six");
   settings.validate(model.states.size());
-  state_ = std::make_unique<State>(model, settings);
+  require(!settings.planar || may_be_planar(model), "planar", kPlanarNeeds);
+  DeadReckoningSettings complete = settings;
+  if (complete.rates.empty()) {
+    complete.rates = named_settings(model).rates;
+  }
+  state_ = std::make_unique<State>(model, complete);
 }
 
 DeadReckoning::~DeadReckoning() = default;

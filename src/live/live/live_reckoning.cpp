@@ -13,31 +13,13 @@
 #include "kelpie/model/trained_model.hpp"
 #include "live/tuning.hpp"
 #include "motion/states.hpp"
+#include "navigation/named_settings.hpp"
 
 namespace kelpie::live {
 namespace {
 
 constexpr std::size_t kMostStates = 6;  // of a DeadReckoning
-constexpr std::size_t kRollRate = 3;    // the first angular velocity
 constexpr std::string_view kNoPose = "no pose is measured";
-
-// Surge, sway and yaw rate first: motion in the plane. Other angular velocities are a gyro's.
-DeadReckoningSettings settings_of(const std::vector<std::string>& names) {
-  DeadReckoningSettings settings;
-  std::vector<std::optional<std::size_t>> axes;
-  for (const std::string& name : names) {
-    axes.push_back(velocity_axis(name));
-  }
-  constexpr std::size_t kYawRate = 5;
-  settings.planar = axes.size() >= 3 && axes[0] == 0U && axes[1] == 1U && axes[2] == kYawRate;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const bool is_rate = axes[i] && *axes[i] >= kRollRate;
-    if (is_rate && names.size() > 1) {
-      settings.rates.push_back(i);
-    }
-  }
-  return settings;
-}
 
 std::vector<std::size_t> late_inputs_of(const StreamPlan& plan) {
   std::vector<std::size_t> late;
@@ -96,7 +78,6 @@ LiveReckoning::LiveReckoning(const Configuration& configuration)
     names_.push_back(configuration.plan.inputs[state]);
     health_.velocities.push_back({.name = names_.back()});
   }
-  settings_ = settings_of(names_);
   heard_.resize(states_.size());
 }
 
@@ -121,6 +102,7 @@ void LiveReckoning::use(std::shared_ptr<const ReckoningModel> model) {
   if (reckoning_) {
     reckoning_->use(model_->loop);
   } else {
+    settings_ = named_settings(model_->loop);
     settings_.between = acts_at_once() ? CommandPath::held : CommandPath::linear;
     reckoning_ = std::make_unique<DeadReckoning>(model_->loop, settings_);
   }

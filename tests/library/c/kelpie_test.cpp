@@ -194,6 +194,7 @@ TEST(InC, BadDataAreNoError) {
   EXPECT_EQ(kelpie_update(model.get(), s.x.data(), 4, s.y.data(), 2, s.t, decisions.data()),
             KELPIE_OK);
   EXPECT_EQ(decisions[0].verdict, KELPIE_INVALID);
+  EXPECT_TRUE(std::isnan(decisions[0].predicted));
   std::array<double, 2> y{};
   EXPECT_EQ(kelpie_predict(model.get(), s.x.data(), 4, y.data(), 2), KELPIE_OK);
   EXPECT_TRUE(std::isnan(y[0]) && std::isnan(y[1]));
@@ -253,9 +254,9 @@ class Boat {
   int row_ = 0;
 };
 
-Model boat_model() {
+Model boat_model(const std::array<const char*, 5>& inputs = kBoat) {
   kelpie_model* model = nullptr;
-  EXPECT_EQ(kelpie_create(kBoat.data(), 5, kBoatTargets.data(), 3, "buffer = 60", &model),
+  EXPECT_EQ(kelpie_create(inputs.data(), 5, kBoatTargets.data(), 3, "buffer = 60", &model),
             KELPIE_OK)
       << kelpie_last_error();
   return {model, kelpie_free};
@@ -513,6 +514,40 @@ TEST(InC, VelocitiesGoOnThroughAnOutage) {
   EXPECT_EQ(kelpie_reckoning_update(nullptr, x.data(), 4, 0.0, nullptr), KELPIE_BAD_INPUT);
   kelpie_reckoning_free(reckoning);
   kelpie_reckoning_free(nullptr);
+}
+
+// A gyro goes on while the velocity log gives zeros; it is told by the names of the velocities.
+TEST(InC, ALogOfZerosIsSilentWhileAGyroGoesOn) {
+  const Model model = boat_model({"u", "w", "r", "n1", "n2"});
+  Boat boat;
+  Boat::Row row{};
+  for (int i = 0; i < 2000; ++i) {
+    row = boat.next();
+    ASSERT_EQ(kelpie_update(model.get(), row.x.data(), 5, row.y.data(), 3, row.t, nullptr),
+              KELPIE_OK);
+  }
+  kelpie_reckoning* reckoning = nullptr;
+  EXPECT_EQ(kelpie_reckoning_create(model.get(), 1, &reckoning), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(),
+               "planar: needs surge, sway and yaw rate as the first three velocities");
+  ASSERT_EQ(kelpie_reckoning_create(model.get(), 0, &reckoning), KELPIE_OK) << kelpie_last_error();
+  std::array<double, 3> velocity{};
+  std::array<std::int32_t, 3> faults{};
+  for (int i = 0; i < 400; ++i) {
+    row = boat.next();
+    std::array<double, 5> x = row.x;
+    if (i >= 300) {
+      x[0] = x[1] = 0.0;
+    }
+    ASSERT_EQ(kelpie_reckoning_update(reckoning, x.data(), 5, row.t, nullptr), KELPIE_OK);
+  }
+  ASSERT_EQ(kelpie_reckoning_velocity(reckoning, velocity.data(), nullptr, faults.data(), 3),
+            KELPIE_OK);
+  EXPECT_EQ(faults, (std::array<std::int32_t, 3>{KELPIE_VELOCITY_ZERO, KELPIE_VELOCITY_ZERO, 0}));
+  EXPECT_NEAR(kelpie_reckoning_silent_s(reckoning), 10.0, 1.0);
+  EXPECT_NEAR(velocity[0], row.x[0], 0.05);
+  EXPECT_NEAR(velocity[2], row.x[2], 0.05);
+  kelpie_reckoning_free(reckoning);
 }
 
 }  // namespace

@@ -49,6 +49,7 @@ TEST_F(OpenLoopModel, MixesTheLearnedModelAndItsEquationsByTheirShares) {
   const OpenLoop alone = open_loop(model, OpenLoopPart::learned);
   const OpenLoop equations = open_loop(model, OpenLoopPart::steady);
   EXPECT_EQ(both.states, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(both.axes, (std::vector<std::optional<std::size_t>>{0, 5}));  // u and r
   for (std::size_t i = 0; i < drive_.x.size(); i += 100) {
     std::array<double, 2> full{};
     std::array<double, 2> f{};

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
@@ -449,6 +451,46 @@ TEST(DeadReckoning, RecognisesExactZerosAndAFrozenLogWithinASecondAndReturnsWith
 }
 
 // Off, with a covariance far too small: the estimate never jumps beyond what was said before.
+// Surge, heave and a gyro's yaw rate, told by their names alone.
+TEST(DeadReckoning, AngularVelocitiesByNameAreOfAGyro) {
+  for (const Broken how : {Broken::zeros, Broken::frozen}) {
+    Water water({0.0, 0.0}, 0.01, 14);
+    OpenLoop loop = linear_vehicle();
+    loop.axes = {0, 2, 5};
+    DeadReckoning reckoning(loop, {.planar = false});
+    follow(reckoning, water, 300.0, false);
+    const Named named = run_broken(reckoning, water, 60.0, how);
+    EXPECT_LE(named.after_s, 1.0);
+    EXPECT_EQ(named.fault, how == Broken::zeros ? VelocityFault::zero : VelocityFault::frozen);
+    EXPECT_EQ(reckoning.fault(2), VelocityFault::none);
+    EXPECT_GE(reckoning.silent_s(), 59.0);
+    EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.1);
+  }
+  OpenLoop turning = linear_vehicle();  // a log of angular velocities alone
+  turning.axes = {3, 4, 5};
+  Water water({0.0, 0.0}, 0.0, 15);
+  DeadReckoning reckoning(turning, {.planar = false});
+  follow(reckoning, water, 10.0, false);
+  EXPECT_EQ(reckoning.silent_s(), 0.0);
+}
+
+TEST(DeadReckoning, IsPlanarUnlessANameSaysOtherwise) {
+  const auto refusal = [](std::vector<std::optional<std::size_t>> axes) {
+    OpenLoop loop = linear_vehicle();
+    loop.axes = std::move(axes);
+    return message_of<InputError>([&] { const DeadReckoning reckoning(loop); });
+  };
+  EXPECT_EQ(refusal({0, 1, 2}),  // heave is no yaw rate
+            "planar: needs surge, sway and yaw rate as the first three velocities");
+  EXPECT_NE(refusal({5, 1, std::nullopt}), "");
+  OpenLoop loop = linear_vehicle();
+  for (const auto& axes :
+       {std::vector<std::optional<std::size_t>>{0, 1, 5}, {0, 1, std::nullopt}}) {
+    loop.axes = axes;
+    EXPECT_NO_THROW(DeadReckoning{loop});
+  }
+}
+
 TEST(DeadReckoning, NeverStepsBeyondThreeDeviationsHoweverWrong) {
   Water water({0.0, 0.0}, 0.001, 11);
   DeadReckoning reckoning(linear_vehicle(0.0005), {.practice_s = 0.0});
