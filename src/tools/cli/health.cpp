@@ -108,7 +108,7 @@ std::vector<std::string> name_glides(Fleet& fleet) {
 // The first log of a vehicle settles columns and alignment of all.
 struct Reader {
   const HealthArguments& options;
-  std::optional<study::LearnPlan> first{};
+  std::optional<PlannedLog> first{};
 
   log::Dataset read(const std::string& file) {
     PlanOptions one = options;
@@ -120,21 +120,17 @@ struct Reader {
       }
     }
     if (!first) {
-      first = plan_log(one).plan;
-      return first->data;
+      first = plan_log(one);
+      return first->plan.data;
     }
-    one.log.inputs = first->data.input_names;
-    one.log.targets = first->data.target_names;
-    if (!first->current.current.none()) {
-      one.log.inputs.push_back(first->current.current.heading);
-    }
-    const log::LogConfig config = log::read_log_config(one.config);
-    log::Dataset data = open_log(one.log.source, config, one.log.over(config.roles)).dataset();
+    const auto& [config, roles] = first->reading;
+    const study::LearnPlan& plan = first->plan;
+    log::Dataset data = open_log(one.log.source, config, roles).dataset();
     check_clock(data, options);
-    check_targets(data, first->settings.shared.states, options);
-    AlignmentResult known = first->alignment;
+    check_targets(data, plan.settings.shared.states, options);
+    AlignmentResult known = plan.alignment;
     known.alignment.water = {};
-    return study::plan_learning(std::move(data), study::parse_split("none", 1), first->settings,
+    return study::plan_learning(std::move(data), study::parse_split("none", 1), plan.settings,
                                 one.align, known, false, one.current)
         .data;
   }
@@ -187,7 +183,7 @@ health::HealthTable judge_drives(const HealthArguments& options,
   is_dated = set_days(logs, missions, times_s, !options.dates.empty());
   const log::Dataset& first = logs.front().data;
   const health::DriveColumns columns{
-      .velocities = find_states(reader.first->settings.shared.states, first.input_names,
+      .velocities = find_states(reader.first->plan.settings.shared.states, first.input_names,
                                 first.target_names.size()),
       .volts = options.volts,
       .density = options.density,

@@ -283,13 +283,17 @@ file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std
 }
 
 // The log for the next commands; learned anew only where no other log follows, of other times.
-report::LogWords words_of(const LearnArguments& options) {
+// `draft`: file of the guessed configuration, or empty. A model's inputs are a choice, with which
+// nothing is guessed.
+report::LogWords words_of(const LearnArguments& options, const std::string& draft) {
+  PlanOptions read = options;
+  read.config = draft.empty() ? options.config : draft;
   report::LogWords words{.file = shell_word(options.log.source.path),
                          .learning = {},
                          .judging = {},
-                         .reading = options.reading_text()};
+                         .reading = read.reading_text()};
   if (options.split != "none") {
-    words.judging = options.judging_text(options.config);
+    words.judging = read.judging_text(read.config);
   }
   if (options.more.empty()) {
     PlanOptions again = options;
@@ -382,7 +386,8 @@ void learn(const LearnArguments& options) {
     next =
         report::after_poor_model(shell_word(options.log.source.path), options.text(options.config));
   } else if (model.ready()) {
-    next = report::after_learning(result, words_of(options),
+    const std::string draft = log.draft.empty() ? "" : (folder.path() / kDraftName).string();
+    next = report::after_learning(result, words_of(options, draft),
                                   shell_word((folder.path() / "model.json").string()));
   }
   const bool has_model =

@@ -77,16 +77,15 @@ log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new
   return data;
 }
 
-// The first log says what the columns of all are; what was guessed for it holds for all. `draft`:
-// that guess.
-log::Dataset open_logs(const PlanOptions& options, log::LogConfig config, log::Roles roles,
-                       bool is_new, std::vector<format::LearnedLog>& learned, std::string& draft) {
+// The first log says what the columns of all are; what was guessed for it holds for all.
+log::Dataset open_logs(const PlanOptions& options, bool is_new, PlannedLog& planned) {
+  auto& [config, roles] = planned.reading;
   const log::Log opened = open_log(options.log.source, config, roles);
   std::vector<log::Dataset> logs{dataset_of(opened, options, is_new)};
   roles.inputs = logs.front().input_names;
   roles.targets = logs.front().target_names;
   if (opened.draft) {
-    draft = opened.draft->toml;
+    planned.draft = opened.draft->toml;
     config = opened.draft->config(options.log.source.path);
     roles.time = config.roles.time;
     roles.units.insert(config.roles.units.begin(), config.roles.units.end());
@@ -97,7 +96,7 @@ log::Dataset open_logs(const PlanOptions& options, log::LogConfig config, log::R
     source.path = path;
     logs.push_back(dataset_of(open_log(source, config, roles), options, false));
   }
-  std::ranges::transform(logs, std::back_inserter(learned), format::learned_log);
+  std::ranges::transform(logs, std::back_inserter(planned.learned), format::learned_log);
   return log::joined(std::move(logs));
 }
 
@@ -222,11 +221,15 @@ std::string PlanOptions::judging_text(const std::string& configuration) const {
 }
 
 std::string PlanOptions::text(const std::string& configuration) const {
+  return logs_text() + learning_text(configuration);
+}
+
+std::string PlanOptions::logs_text() const {
   std::string logs = shell_word(log.source.path);
   for (const std::string& path : more) {
     logs += " " + shell_word(path);
   }
-  return logs + learning_text(configuration);
+  return logs;
 }
 
 std::string PlanOptions::learning_text(const std::string& configuration) const {
@@ -252,18 +255,19 @@ PlannedLog plan_log(const PlanOptions& options, const format::Origin* from) {
           "is a time of one log; give that log alone");
   const std::optional<file::TomlNode> root =
       options.config.empty() ? std::nullopt : std::optional(file::TomlNode::read(options.config));
-  const log::LogConfig config = root ? log::read_log_config(*root) : log::LogConfig{};
+  PlannedLog log{.plan = {},
+                 .learned = {},
+                 .config = root ? format::read_settings_file(*root) : format::SettingsFile{}};
+  log.reading.config = root ? log::read_log_config(*root) : log::LogConfig{};
   const study::SplitSettings split = study::parse_split(options.split, options.seed);
-  log::Roles roles = options.log.over(config.roles);
+  log::Roles& roles = log.reading.roles;
+  roles = options.log.over(log.reading.config.roles);
   roles.held_out = split.column;
   if (from != nullptr) {
     take_columns(*from, roles);
     roles.heading = from->alignment().water.heading;
   }
-  PlannedLog log{.plan = {},
-                 .learned = {},
-                 .config = root ? format::read_settings_file(*root) : format::SettingsFile{}};
-  log::Dataset data = open_logs(options, config, roles, from == nullptr, log.learned, log.draft);
+  log::Dataset data = open_logs(options, from == nullptr, log);
   ModelSettings settings =
       from != nullptr ? format::make_settings(log.config, options.set, from->settings())
                       : format::make_settings(log.config, options.set, data.target_names.size());

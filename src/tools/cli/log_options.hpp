@@ -77,6 +77,7 @@ struct PlanOptions {
   std::string learning_text(const std::string& configuration) const;
   /// The logs with learning_text(): "log.csv --rate 4".
   std::string text(const std::string& configuration) const;
+  std::string logs_text() const;  ///< The logs as a shell takes them.
 };
 
 /// Checks the clock of a log (log::clock_mistakes()). Prints to stderr the mistakes that hardly
@@ -87,6 +88,12 @@ void check_clock(const log::Dataset& data, const PlanOptions& options);
 std::string check_targets(const log::Dataset& data, const std::string& states,
                           const PlanOptions& options);
 
+/// How a log is read.
+struct LogReading {
+  log::LogConfig config;
+  log::Roles roles;
+};
+
 /// A log, or several joined ones, read and ready to be learned.
 struct PlannedLog {
   study::LearnPlan plan;
@@ -94,6 +101,7 @@ struct PlannedLog {
   format::SettingsFile config;              ///< configuration file of the settings
   std::string draft{};                      ///< the guessed configuration of the log, or empty
   std::string doubt{};                      ///< accepted mistakes of the targets, or empty
+  LogReading reading{};                     ///< of another log with these columns, draft included
 };
 
 /// Reads the logs, splits their rows and aligns their commands. `from` is the model to continue,

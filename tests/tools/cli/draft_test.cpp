@@ -59,6 +59,23 @@ TEST_F(DraftCommand, ATemplateIsLearnedAsTheLogWithoutAConfiguration) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
+// Velocities under kelpie's names, so that the columns alone are all that a model wants.
+TEST_F(DraftCommand, TheNextCommandsReadTheLogAsItWasLearned) {
+  write("raw.csv", raw_log("t,u,thruster"));
+  const Outcome learned = testing::succeeded(run("learn raw.csv --out g" + testing::kFewSamples));
+  for (const std::string name : {"rollout raw.csv", "predict LOG", "learn LOG"}) {
+    const std::size_t at = learned.out.find("kelpie " + name);
+    ASSERT_NE(at, std::string::npos) << learned.out;
+    std::string next = learned.out.substr(at + 7, learned.out.find("   (", at) - at - 7);
+    EXPECT_NE(next.find(" --config g/log.toml"), std::string::npos) << next;
+    if (const std::size_t log = next.find("LOG"); log != std::string::npos) {
+      next.replace(log, 3, "raw.csv");
+    }
+    const Outcome outcome = testing::succeeded(run(next + " --out next_" + name.substr(0, 5)));
+    EXPECT_EQ(outcome.out.find("no configuration"), std::string::npos) << outcome.out;
+  }
+}
+
 TEST_F(DraftCommand, TwoReadingsAreRefusedByNameAndNothingIsWritten) {
   write("raw.csv", raw_log("t,surge,u"));
   const Outcome outcome = run("learn raw.csv --out out");

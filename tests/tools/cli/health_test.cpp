@@ -113,6 +113,29 @@ TEST_F(Health, ChecksEveryLogAndNotTheFirstAlone) {
   succeeded(run("health a.csv b.csv --align none --accept implausible --out out"));
 }
 
+// The log without the columns behind the thrusters' speeds.
+std::string without_accelerations(const std::string& text) {
+  std::string kept;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t comma = at;
+    for (int column = 0; column < 8; ++column) {  // t,conf,u,v,r,th1,th2,th3
+      comma = text.find(',', comma + 1);
+    }
+    kept += text.substr(at, comma - at) + "\n";
+    at = text.find('\n', at) + 1;
+  }
+  return kept;
+}
+
+TEST_F(Health, LogsWithoutAccelerationsAreReadAsTheFirst) {
+  for (const char* const name : {"a.csv", "b.csv"}) {
+    dive(name, name[0], 1.0);
+    write(name, without_accelerations(content(name)));
+  }
+  const testing::Outcome outcome = succeeded(run("health a.csv b.csv --align none --out out"));
+  EXPECT_NE(outcome.out.find(": 2 episodes, "), std::string::npos) << outcome.out;
+}
+
 // A glider that goes down and up, a row every 5 s.
 std::string glides() {
   RandomStream random(1, "glider");
