@@ -216,6 +216,7 @@ Identified identified(const IdentifyArguments& options, const study::KnownThrust
     }
     warn("in the plane, not on six axes: {}\n", why);
   }
+  refuse_volts_in_plane(options.six);
   return in_plane(options, wish, base);
 }
 
@@ -235,17 +236,9 @@ file::FileSet files_of(const Identified& result, const std::vector<EngineFile>& 
 
 // The log and the options of `identify`.
 std::string again_text(const IdentifyArguments& options) {
-  std::string text = options.text(options.config);
-  const auto add = [&](const char* option, const std::string& value) {
-    text += value.empty() ? "" : fmt::format(" {} {}", option, shell_word(value));
-  };
-  add("--thrusters", join_text(options.thrusters, ","));
-  add("--only", options.only ? std::to_string(*options.only) : "");
-  add("--vehicle", options.six.vehicle);
-  add("--volts", options.six.volts);
-  add("--frame", options.six.frame);
-  add("--for", join_text(options.engines, ","));
-  return text;
+  const std::string engines = join_text(options.engines, ",");
+  return options.logs_text() + identification_text(options, options.six) +
+         (engines.empty() ? "" : " --for " + shell_word(engines));
 }
 
 void run_identify(const IdentifyArguments& given) {

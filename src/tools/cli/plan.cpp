@@ -139,6 +139,7 @@ format::PlannedDrive planned_for(const DriveArguments& options,
 }
 
 format::PlannedDrive planned_in_plane(const DriveArguments& options) {
+  refuse_volts_in_plane(options.six);
   require(!options.depth_m, "--depth", "bounds a drive on six axes, which takes --vehicle");
   require(!options.tilt_deg, "--tilt", "bounds a drive on six axes, which takes --vehicle");
   const study::LearnPlan log = plan_log(options).plan;
@@ -212,6 +213,14 @@ format::PlannedDrive planned(const DriveArguments& options) {
   return planned_in_plane(options);
 }
 
+// The log joined with that of the drive, read alike; --since is a time of one log.
+std::string next_text(const DriveArguments& options) {
+  DriveArguments joined = options;
+  joined.since_s.reset();
+  return fmt::format("kelpie identify {} DRIVE{}   (the log and the log of the drive, joined)",
+                     joined.logs_text(), identification_text(joined, joined.six));
+}
+
 void run_plan(const DriveArguments& given) {
   given.answer.begin();
   DriveArguments options = given;
@@ -239,7 +248,7 @@ void run_plan(const DriveArguments& given) {
                 .files = {},
                 .next = {}};
   answer.add_files(files, out.path(), {{kSetpoints, "setpoints"}});
-  answer.next = {"kelpie identify LOG DRIVE   (the log and the log of the drive, joined)"};
+  answer.next = {next_text(given)};
   give(answer, options.answer);
 }
 

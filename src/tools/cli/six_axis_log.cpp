@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/six_axis_log.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "cli/options.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
 
 namespace kelpie::cli {
 
@@ -10,6 +16,28 @@ void begin_six_axes(const SixAxisOptions& six, PlanOptions& options) {
     options.log.also.push_back(six.volts);
   }
   body_frame(six.frame, false);
+}
+
+std::string identification_text(const IdentificationOptions& options, const SixAxisOptions& six) {
+  std::string text = options.learning_text(options.config);
+  const auto add = [&](const char* option, const std::string& value) {
+    text += value.empty() ? "" : fmt::format(" {} {}", option, shell_word(value));
+  };
+  add("--thrusters", join_text(options.thrusters, ","));
+  for (const std::string& thrust : options.thrust) {
+    add("--thrust", thrust);
+  }
+  add("--only", options.only ? std::to_string(*options.only) : "");
+  add("--vehicle", six.vehicle);
+  add("--volts", six.volts);
+  add("--frame", six.frame);
+  return text;
+}
+
+void refuse_volts_in_plane(const SixAxisOptions& six) {
+  require(six.volts.empty(), "--volts",
+          "has no effect in the plane, where thrust does not follow the supply: it is for six "
+          "axes, which take --vehicle with the places of the log's thrusters; remove --volts");
 }
 
 std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions& six,

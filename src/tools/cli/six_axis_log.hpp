@@ -19,6 +19,13 @@ struct SixAxisOptions {
   std::string volts;
 };
 
+/// The options of `kelpie identify` and `kelpie plan` alike, beside the logs, as given.
+/// `options` without the supply of begin_six_axes().
+std::string identification_text(const IdentificationOptions& options, const SixAxisOptions& six);
+
+/// Throws InputError (--volts) where a supply is given and the log is identified in the plane.
+void refuse_volts_in_plane(const SixAxisOptions& six);
+
 /// A log of six axes of the vehicle of a file.
 struct SixAxisLog {
   study::LearnPlan plan;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "chart/figure.hpp"
@@ -20,6 +21,8 @@ namespace {
 
 constexpr std::size_t kMostLines = 7;  // of a figure
 constexpr double kMostShare = 10.0;    // an interval wider than the value says nothing
+constexpr double kBesideAim = 0.05;    // of a linear axis, beyond its numbers
+constexpr double kBelowAim = 1.25;     // of a logarithmic one
 
 double degrees(double rad) {
   return rad / kRadPerDegree;
@@ -96,14 +99,31 @@ chart::TextTable manoeuvres_view(const format::PlannedDrive& drive) {
   return table;
 }
 
+// From the least to the greatest number of these parameters, the aim among them.
+chart::Extent countdown_range(const format::PlannedDrive& drive,
+                              std::span<const std::size_t> places, double factor) {
+  std::vector<double> numbers{factor * drive.aim};
+  for (const study::DriveMoment& moment : drive.plan.countdown) {
+    for (const std::size_t place : places) {
+      numbers.push_back(factor * moment.numbers[place]);
+    }
+  }
+  const chart::Extent range = chart::range_of(numbers);
+  const double beside = kBesideAim * (range.high - range.low);
+  return drive.parts ? chart::Extent{range.low - beside, range.high + beside}
+                     : chart::Extent{range.low / kBelowAim, range.high * kBelowAim};
+}
+
 std::string countdown_figure(const format::PlannedDrive& drive) {
+  const std::vector<std::size_t> places = by_need(drive);
+  const double factor = drive.parts ? 1.0 : 100.0;
   chart::Figure figure(
       {.label = "time in s"},
       {.label = drive.parts ? "evidence in nats" : "half width of the 90 % interval in %",
+       .range = countdown_range(drive, std::span(places).first(std::min(places.size(), kMostLines)),
+                                factor),
        .kind = drive.parts ? chart::ScaleKind::linear : chart::ScaleKind::logarithmic},
       "What is known on the way");
-  const std::vector<std::size_t> places = by_need(drive);
-  const double factor = drive.parts ? 1.0 : 100.0;
   for (std::size_t line = 0; line < std::min(places.size(), kMostLines); ++line) {
     std::vector<chart::Point> points;
     for (const study::DriveMoment& moment : drive.plan.countdown) {

@@ -72,6 +72,23 @@ std::string parameter_bars(const study::Identification& found) {
                                 "as of trim, a tether or an offset of a sensor.");
 }
 
+// Whether the structure lies farther from the log than noise takes it: intervals count noise.
+bool misses_forces(const study::Identification& found) {
+  return !found.of_poses && found.fit().misfit > kTuning.high_misfit;
+}
+
+std::string misfit_text(const study::Identification& found) {
+  return fmt::format(
+      "WARNING: misfit {:.1f}, where noise alone gives 1: the equation misses forces that moved "
+      "this vehicle, and the 90 % intervals are too narrow. Likely causes: {}.",
+      found.fit().misfit,
+      found.six
+          ? "thrusters with curves of their own or in each other's wake, couplings of drag, a "
+            "current"
+          : "a battery that sags, a dead band, commands that do not tell the thrust, lift, a "
+            "current");
+}
+
 // How far the parameters can be trusted, in one sentence.
 std::string headline(const study::Identification& found, std::size_t told) {
   if (told == 0) {
@@ -86,7 +103,11 @@ std::string headline(const study::Identification& found, std::size_t told) {
   }
   const std::string count =
       fmt::format("{} of {} parameters identified", told, found.fit().parameters.size());
-  return poor.empty()   ? count
+  return poor.empty()   ? count + (misses_forces(found)
+                                       ? fmt::format(", with intervals that are too narrow (misfit "
+                                                       "{:.1f})",
+                                                     found.fit().misfit)
+                                       : "")
          : good.empty() ? count + ", but they predict no axis well: do not trust them"
                         : count + "; trust those of " + chart::list_text(good) + ", not those of " +
                               chart::list_text(poor);
@@ -193,6 +214,13 @@ std::string axis_figure(const study::Identification& found, std::size_t axis) {
 
 std::vector<std::string> identification_remarks(const study::Identification& found) {
   std::vector<std::string> remarks;
+  if (misses_forces(found)) {
+    remarks.push_back(misfit_text(found));
+  }
+  if (!found.fins.empty()) {
+    remarks.push_back("WARNING: " + study::fins_text(found.fins) +
+                      ". Other parameters take their forces.");
+  }
   switch (found.scale) {
     case study::ScaleSource::none:
       remarks.emplace_back(

@@ -20,6 +20,8 @@ inline constexpr struct Tuning {
   std::size_t longest_log = 60;     ///< characters of a log's name in a verdict
   double told_horizon_s = 10.0;     ///< the longest horizon that a verdict tells in words
   std::ptrdiff_t rows_since = 500;  ///< after a change, that are worth learning alone
+  std::size_t judging_rows = 100;   ///< held-out rows since a change that judge the model alone
+  double better_since = 0.05;       ///< of R², on these rows: the rows of before mislead
   std::size_t most_changes = 6;     ///< lines about changes of the vehicle in a verdict
   double told_skipped = 0.05;       ///< share of the rows: more left out are told
   double told_thrust = 1.0;         ///< widest interval of a thruster's share that tells the share
@@ -27,7 +29,10 @@ inline constexpr struct Tuning {
   double clear_gain = 0.05;         ///< of R², by the commands, in the first look at a log
   double structure_loss = 0.05;     ///< of R²: a larger loss to untied terms is a warning
   double poor_r2 = 0.5;             ///< R² of an identified axis below is a warning
-  double high_correlation = 0.9;    ///< of the errors of two parameters; listed from here on
+  /// χ² over its expectation of an identified vehicle; above, its intervals are too narrow.
+  /// Simulated vehicles have 1.6 to 3.7, with a battery that sags 7.9, with a dead band 6.9.
+  double high_misfit = 5.0;
+  double high_correlation = 0.9;  ///< of the errors of two parameters; listed from here on
 } kTuning;
 
 }  // namespace kelpie::report

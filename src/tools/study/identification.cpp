@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
+#include "log/known_roles.hpp"
 #include "log/plausibility.hpp"
 #include "motion/pose_fit.hpp"
 #include "motion/signal_names.hpp"
@@ -22,6 +25,19 @@ namespace {
 
 constexpr std::array<std::size_t, kPlanarAxes> kAxes{0, 1, 5};  // of velocity_axis()
 constexpr std::array<const char*, kPlanarAxes> kAxisNames{"surge", "sway", "yaw rate"};
+
+// Words of names, numbered or not.
+constexpr std::array kFinWords = std::to_array<std::string_view>(
+    {"rudder", "rudders", "fin", "fins", "elevator", "elevators", "plane", "planes", "sternplane",
+     "sternplanes", "bowplane", "bowplanes", "aileron", "ailerons", "flap", "flaps", "delta"});
+
+bool names_fin(const std::string& column) {
+  return std::ranges::any_of(log::words_of(column), [](const std::string& word) {
+    const std::size_t letters = word.find_last_not_of("0123456789") + 1;
+    return std::ranges::find(kFinWords, std::string_view(word).substr(0, letters)) !=
+           kFinWords.end();
+  });
+}
 
 std::vector<std::size_t> find_thrusters(const log::Dataset& data,
                                         const std::vector<std::size_t>& velocities,
@@ -37,6 +53,12 @@ std::vector<std::size_t> find_thrusters(const log::Dataset& data,
     const std::string& name = data.input_names[i];
     if (std::ranges::find(velocities, i) != velocities.end() || velocity_axis(name)) {
       continue;
+    }
+    if (names_fin(name)) {
+      throw InputError({.file = data.source, .line = 0, .field = name},
+                       "is a fin by its name, and the forces of fins are not in the equation "
+                       "(docs/howto/identify.md, \"Where it fails\"); say by --thrusters which "
+                       "inputs are thrusters (a fin then takes no part)");
     }
     if (!names_thruster(name)) {
       throw InputError({.file = data.source, .line = 0, .field = name},
@@ -234,12 +256,28 @@ void HeldOutFit::score() {
   }
 }
 
+std::vector<std::string> fins_of(const log::Dataset& data) {
+  std::vector<std::string> fins;
+  std::ranges::copy_if(data.input_names, std::back_inserter(fins), names_fin);
+  return fins;
+}
+
+std::string fins_text(const std::vector<std::string>& fins) {
+  return fins.empty()
+             ? ""
+             : join_text(fins, ", ") +
+                   (fins.size() == 1 ? " is a fin by its name" : " are fins by their names") +
+                   ": forces of fins go with the square of the speed, and are not in the equation "
+                   "(docs/howto/identify.md, \"Where it fails\")";
+}
+
 Identification identification_of(const log::Dataset& data, const Split& split,
                                  std::size_t training_rows) {
   Identification found;
   found.source = data.source;
   found.split = split.label;
   found.training_rows = training_rows;
+  found.fins = fins_of(data);
   return found;
 }
 
@@ -266,6 +304,7 @@ Identification identify(const log::Dataset& data, const Split& split, const Plan
   } else {
     const PoseRows poses = pose_rows(data, training, columns, rows);
     found.planar = of_log(data, [&] { return fit_poses(poses); });
+    found.of_poses = true;
   }
   require_numbers(data, found.planar);
   for (const std::size_t target : columns.targets) {

@@ -63,6 +63,8 @@ struct Identification {
   HeldOutFit held_out{};                   ///< empty without held-out rows
   std::string alignment{};                 ///< of the commands, in words; empty: unknown
   std::vector<LagInterval> lags{};         ///< time constants of actuators, in the plane
+  std::vector<std::string> fins{};         ///< inputs that are fins by their names
+  bool of_poses = false;                   ///< the misfit counts errors that last (fit_poses())
   CertificateList certificates{};          ///< empty without a scale
 
   const ParameterFit& fit() const { return six ? static_cast<const ParameterFit&>(*six) : planar; }
@@ -78,7 +80,7 @@ struct PlanarColumns {
 /// Finds the columns. Velocities follow from `states` (the setting of that name) and their names;
 /// three velocities without known names are surge, sway and yaw rate. Thrusters are the inputs
 /// `wanted`, or else every remaining input. Throws InputError without surge, sway, yaw rate or a
-/// thruster, and on an input without a thruster's name where `wanted` is empty.
+/// thruster, and on an input without a thruster's name, or with a fin's, where `wanted` is empty.
 PlanarColumns planar_columns(const log::Dataset& data, const std::string& states,
                              const std::vector<std::string>& wanted);
 
@@ -104,13 +106,22 @@ Identification identification_of(const log::Dataset& data, const Split& split,
 /// Gives forces their unit, as far as known (docs/howto/identify.md, "The scale").
 void give_scale(const KnownThrust& known, Identification& found);
 
-/// Calls `estimate`, and names the log where its rows don't suffice.
+/// Inputs that are fins by their names (rudder, fin2, elevator, stern_plane, …), whose forces are
+/// not in the equation.
+std::vector<std::string> fins_of(const log::Dataset& data);
+
+/// What is said of fins, for the user; empty without any.
+std::string fins_text(const std::vector<std::string>& fins);
+
+/// Calls `estimate`, and names the log, and its fins, where its rows don't suffice.
 template <typename Estimate>
 auto of_log(const log::Dataset& data, Estimate estimate) {
   try {
     return estimate();
   } catch (const InputError& error) {
-    throw InputError({.file = data.source, .line = 0, .field = {}}, error.what());
+    const std::string fins = fins_text(fins_of(data));
+    throw InputError({.file = data.source, .line = 0, .field = {}},
+                     error.what() + (fins.empty() ? "" : "; " + fins));
   }
 }
 

@@ -273,6 +273,26 @@ TEST_F(Identify, WithoutAScaleThereAreRatiosAndNoFilesOfSimulators) {
                  "th3: isn't the acceleration of 'r'");
 }
 
+// In the plane no thrust follows the supply: the option would be without effect.
+TEST_F(Identify, TheSupplyIsRefusedInThePlane) {
+  simulate(kDagon, "as_recorded", "log.csv");
+  expect_refused("log.csv --volts th3", "--volts: has no effect in the plane");
+  expect_refused("log.csv --volts th3 --vehicle " + kDagon, "--volts: has no effect in the plane");
+  testing::expect_refused(run("plan log.csv --volts th3 --out refused"),
+                          "--volts: has no effect in the plane");
+}
+
+TEST_F(Identify, SaysThatFinsAreNotInTheEquation) {
+  simulate(kDagon, "as_recorded", "log.csv");
+  std::string text = content("log.csv");
+  write("fins.csv", text.replace(text.find("th3"), 3, "stern_plane2"));
+  expect_refused("fins.csv", "stern_plane2: is a fin by its name");
+  // One thruster alone tells no inertia of sway.
+  write("one.csv", text.replace(text.find("th2"), 3, "rudder"));
+  expect_refused("one.csv --thrusters th1",
+                 "every thruster runs by itself; rudder, stern_plane2 are fins by their names");
+}
+
 TEST_F(Identify, PrintsItsParametersAsJson) {
   simulate(kDagon, "as_recorded", "log.csv");
   const Outcome outcome = testing::succeeded(run("identify log.csv --out out --json"));

@@ -61,6 +61,29 @@ TEST_F(Plan, SetpointsAreThoseOfThePlan) {
   EXPECT_NE(content("out/plan.html").find("Countdown"), std::string::npos);
 }
 
+TEST_F(Plan, TheNextCommandHasTheOptionsOfTheLog) {
+  std::string text = content("log.csv");
+  write("log.csv", text.replace(text.find("th1,th2,th3"), 11, "a1,a2,a3"));
+  const testing::Outcome outcome = testing::succeeded(
+      run("plan log.csv --thrusters a1,a2,a3 --thrust a1=0.0262 --align none --seconds 10 "
+          "--since 1 --out out"));
+  const std::string wanted =
+      "kelpie identify log.csv DRIVE --align none --thrusters a1,a2,a3 --thrust a1=0.0262   (";
+  ASSERT_NE(outcome.out.find(wanted), std::string::npos) << outcome.out;
+  testing::succeeded(
+      run("identify log.csv log.csv --align none --thrusters a1,a2,a3 --thrust a1=0.0262"));
+}
+
+// The axis holds the aim, however far the drive stays above.
+TEST_F(Plan, ThePictureReachesBelowTheAim) {
+  planned("--tell surge_drag --percent 0.5 --seconds 10", "out");
+  const std::string page = content("out/plan.html");
+  const std::string axis = R"("label":"half width of the 90 % interval in %","log":true,"range":[)";
+  const std::size_t at = page.find(axis);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_LT(std::stod(page.substr(at + axis.size())), 0.5);
+}
+
 TEST_F(Plan, WhatTheLogTellsNeedsNoManoeuvre) {
   const json plan = planned("--tell sway_drag --seconds 60", "out");
   EXPECT_EQ(plan["names"], (json{"sway_linear_drag", "sway_quadratic_drag"}));

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "chart/markup_check.hpp"
+#include "core/text.hpp"
+#include "report/verdicts.hpp"
 
 namespace kelpie::identification_report_test {
 namespace {
@@ -52,6 +54,37 @@ TEST(IdentificationReport, UnitsAreAsPeopleWriteThem) {
   EXPECT_NE(page.find("N/(rev/s)²"), std::string::npos);
   EXPECT_NE(page.find("N s²/m²"), std::string::npos);
   EXPECT_EQ(page.find("^2"), std::string::npos);
+}
+
+bool remarks_on(const study::Identification& found, const std::string& words) {
+  return join_text(report::identification_remarks(found), "\n").find(words) != std::string::npos;
+}
+
+// A battery that sags has misfit 7.88, and R² of 0.94.
+TEST(IdentificationReport, AMisfitFarFromChanceIsAWarning) {
+  study::Identification found = found_nothing();
+  found.planar.parameters = {
+      {.name = "sure", .value = 2.0, .error = 0.02, .state = ParameterState::identified}};
+  found.planar.covariance = Matrix(1, 1);
+  found.planar.misfit = 2.99;
+  EXPECT_FALSE(remarks_on(found, "misfit"));
+  found.planar.misfit = 7.88;
+  EXPECT_TRUE(remarks_on(found, "WARNING: misfit 7.9, where noise alone gives 1"));
+  EXPECT_TRUE(remarks_on(found, "intervals are too narrow"));
+  EXPECT_TRUE(remarks_on(found, "a battery that sags, a dead band"));
+  EXPECT_NE(report::identification_verdict(found).find("WARNING: misfit 7.9"), std::string::npos);
+  EXPECT_NE(report::identification_html(found).find(
+                "1 of 1 parameters identified, with intervals that are too narrow (misfit 7.9)."),
+            std::string::npos);
+  found.of_poses = true;  // counts errors that last, which intervals count, too
+  EXPECT_FALSE(remarks_on(found, "misfit"));
+}
+
+TEST(IdentificationReport, FinsOfTheLogAreToldToBeMissing) {
+  study::Identification found = found_nothing();
+  EXPECT_FALSE(remarks_on(found, "fin"));
+  found.fins = {"rudder"};
+  EXPECT_TRUE(remarks_on(found, "WARNING: rudder is a fin by its name"));
 }
 
 }  // namespace
