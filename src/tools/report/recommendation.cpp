@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "chart/wording.hpp"
@@ -57,16 +58,16 @@ std::string of_no_use(double kelpie, double mean) {
       against(kelpie, mean), worse);
 }
 
-std::string of_axis(const study::Comparison& comparison, std::size_t axis) {
+Advice of_axis(const study::Comparison& comparison, std::size_t axis) {
   const double kelpie = final_r2(&comparison.contests.front(), axis);
   if (!std::isfinite(kelpie)) {
-    return "kelpie has no R² here, so there is nothing to compare.";
+    return {"kelpie has no R² here, so there is nothing to compare."};
   }
   const double mean = final_r2(contest_of(comparison, ContenderKind::mean), axis);
   const double fit = final_r2(contest_of(comparison, ContenderKind::least_squares), axis);
   if (std::fmax(kelpie, std::fmax(fit, best_variant(comparison, axis))) <=
       use_of(mean) + kTuning.clear_r2) {
-    return of_no_use(kelpie, mean);
+    return {of_no_use(kelpie, mean)};
   }
   std::vector<std::string> parts;
   if (kelpie <= mean + kTuning.clear_r2) {
@@ -78,9 +79,12 @@ std::string of_axis(const study::Comparison& comparison, std::size_t axis) {
         "terms here. Search settings with `kelpie tune`, or drive longer.",
         against(fit, kelpie)));
   }
-  return parts.empty() ? fmt::format("kelpie is the best here, or within {} of it (R² {}).",
-                                     kTuning.clear_r2, chart::decimal(kelpie))
-                       : join_text(parts, " ");
+  if (parts.empty()) {
+    return {fmt::format("kelpie is the best here, or within {} of it (R² {}).", kTuning.clear_r2,
+                        chart::decimal(kelpie)),
+            false};
+  }
+  return {join_text(parts, " ")};
 }
 
 // Nothing where kelpie is as good everywhere.
@@ -103,17 +107,25 @@ std::string of_one_step(const study::Comparison& comparison) {
 
 }  // namespace
 
-std::vector<std::string> recommendation(const study::Comparison& comparison) {
-  std::vector<std::string> paragraphs;
+std::vector<Advice> all_advice(const study::Comparison& comparison) {
+  std::vector<Advice> all;
   const std::vector<study::AxisResult>& axes = comparison.contests.front().stream.axes;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    paragraphs.push_back(axes[axis].name + ": " + of_axis(comparison, axis));
+    Advice& advice = all.emplace_back(of_axis(comparison, axis));
+    advice.text = axes[axis].name + ": " + advice.text;
   }
-  for (const std::string& text : {of_one_step(comparison), settings_advice(comparison)}) {
-    if (!text.empty()) {
-      paragraphs.push_back(text);
+  for (const Advice& advice :
+       {Advice{of_one_step(comparison)}, Advice{settings_advice(comparison), false}}) {
+    if (!advice.text.empty()) {
+      all.push_back(advice);
     }
   }
+  return all;
+}
+
+std::vector<std::string> recommendation(const study::Comparison& comparison) {
+  std::vector<std::string> paragraphs;
+  std::ranges::transform(all_advice(comparison), std::back_inserter(paragraphs), &Advice::text);
   return paragraphs;
 }
 

@@ -8,8 +8,17 @@
 
 namespace kelpie::report {
 
-/// The conclusions of a comparison, as paragraphs of plain text: each axis, then predictions a step
-/// ahead, then the tried settings. Requires kelpie as the first contest.
+/// A conclusion, as a paragraph of plain text.
+struct Advice {
+  std::string text;
+  bool is_news = true;  ///< beside the table and settings_advice(); not where kelpie is the best
+};
+
+/// The conclusions of a comparison: each axis, then predictions a step ahead, then the tried
+/// settings. Requires kelpie as the first contest.
+std::vector<Advice> all_advice(const study::Comparison& comparison);
+
+/// The texts of all_advice().
 std::vector<std::string> recommendation(const study::Comparison& comparison);
 
 /// Names of the contests with a setting more than kelpie's.

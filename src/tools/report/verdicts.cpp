@@ -65,10 +65,8 @@ std::string comparison_verdict(const study::Comparison& comparison) {
                   chart::grouped(kelpie.training_rows), short_name(kelpie.source));
   text +=
       paragraph(settings_advice(comparison)) + "\n" + chart::table_text(contest_table(comparison));
-  for (const std::string& advice : recommendation(comparison)) {
-    const bool is_no_news = advice == settings_advice(comparison) ||
-                            advice.find("kelpie is the best here") != std::string::npos;
-    text += is_no_news ? "" : paragraph(advice);
+  for (const Advice& advice : all_advice(comparison)) {
+    text += advice.is_news ? paragraph(advice.text) : "";
   }
   return text;
 }

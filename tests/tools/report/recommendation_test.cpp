@@ -32,6 +32,16 @@ TEST(Recommendation, KelpieWhereNothingIsClearlyBetter) {
   expect_says(level, "None of the settings tried (terms=none) is better");
 }
 
+TEST(Recommendation, WhereKelpieIsTheBestIsNoNews) {
+  const auto is_news = [](double fit) {
+    return report::all_advice(comparison({.kelpie = 0.93, .variant = 0.9, .fit = fit}))
+        .front()
+        .is_news;
+  };
+  EXPECT_FALSE(is_news(0.9));
+  EXPECT_TRUE(is_news(0.99));
+}
+
 TEST(Recommendation, LeastSquaresWhereTheyAreClearlyBetter) {
   const study::Comparison fitted = comparison({.kelpie = 0.88, .variant = 0.80, .fit = 0.93});
   expect_says(fitted, "axis0: least squares on physics terms is better (R² 0.930 against 0.880)");
