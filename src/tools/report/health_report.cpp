@@ -61,6 +61,20 @@ bool has_too_few_episodes(const HealthCard& card) {
       card.changes, [](const Change& change) { return change.course.kind == CourseKind::unknown; });
 }
 
+// The given days since which no quantity has enough episodes for a change.
+std::vector<std::string> untold_baselines(const HealthCard& card) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i < card.baselines.size(); ++i) {
+    const bool is_told = std::ranges::any_of(card.changes, [&](const Change& change) {
+      return change.baseline == i && change.course.kind != CourseKind::unknown;
+    });
+    if (!is_told) {
+      names.push_back(card.baselines[i].name);
+    }
+  }
+  return names;
+}
+
 // What no significant change bounds: the widest of the intervals since deployment.
 std::string quiet_text(const HealthCard& card) {
   std::vector<std::string> quiet;
@@ -210,6 +224,12 @@ std::string health_verdict(const std::vector<HealthCard>& cards) {
     if (found.empty()) {
       text += has_too_few_episodes(card) ? "  too few episodes to tell a change\n"
                                          : "  no significant change\n";
+    }
+    if (const std::vector<std::string> untold = untold_baselines(card);
+        !untold.empty() && !has_too_few_episodes(card)) {
+      text += chart::wrapped("  " + chart::printable("since " + chart::list_text(untold) +
+                                                     ": too few episodes to tell a change")) +
+              "\n";
     }
     if (const std::string quiet = quiet_text(card); !quiet.empty() && cards.size() == 1) {
       text += chart::wrapped(chart::printable(quiet)) + "\n";

@@ -55,11 +55,7 @@ bool has_model(const study::StreamResult& result) {
 
 // What the model was made of: the inputs by what each is taken for, and rows.
 std::string sources(const study::StreamResult& result) {
-  chart::Facts facts;
-  for (const std::string& inputs : input_lines(result)) {
-    const std::size_t colon = inputs.find(": ");
-    facts.emplace_back(inputs.substr(0, colon), inputs.substr(colon + 2));
-  }
+  chart::Facts facts = input_facts(result);
   facts.emplace_back("learned", fmt::format("{} rows, once each, in the order of time",
                                             chart::grouped(result.samples_shown)));
   facts.emplace_back(
@@ -70,7 +66,8 @@ std::string sources(const study::StreamResult& result) {
 std::string quality(const study::StreamResult& result) {
   const chart::TextTable table = quality_table(result);
   return chart::html_table(table.head, table.rows, "", table.left) +
-         chart::paragraph("note", table.title + "; 1 is perfect, 0 is no better than the mean.");
+         chart::paragraph("note", table.title + "; 1 is perfect, 0 is no better than the mean." +
+                                      (table.notes.empty() ? "" : " " + table.notes.front()));
 }
 
 // The first screen: what matters most, how good the model is, and of what.

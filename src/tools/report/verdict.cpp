@@ -8,13 +8,16 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
 #include "chart/wording.hpp"
 #include "core/text.hpp"
 #include "kelpie/motion/attitude.hpp"
+#include "motion/states.hpp"
 #include "report/stream_figures.hpp"
 #include "report/tuning.hpp"
 #include "study/diagnosis.hpp"
@@ -40,9 +43,32 @@ std::string quality(double r2) {
   return r2 >= kTuning.good_r2 ? "good" : r2 >= kTuning.fair_r2 ? "fair" : "weak";
 }
 
+using Since = std::optional<study::SinceChange>;
+
+// Whether the rows since a change tell that the model is clearly better than over all rows: those
+// of before judge it by another vehicle.
+bool is_better_since(const study::AxisResult& axis, const Since& since) {
+  return since && since->rows >= kTuning.judging_rows &&
+         since->r2 > std::max(kTuning.clear_r2, axis.r2_final + kTuning.better_since);
+}
+
+// Whether rows of before the change are most of those that judge, and find the model wanting.
+bool is_judged_by_before(const study::AxisResult& axis, const Since& since) {
+  return since && 2 * since->before > since->before + since->rows &&
+         axis.r2_final < kTuning.good_r2;
+}
+
 // How good the predictions of an axis are, in words that follow "are".
-std::string quality_of(const study::AxisResult& axis) {
+std::string quality_of(const study::AxisResult& axis, const Since& since) {
+  if (is_better_since(axis, since)) {
+    return fmt::format("{} since {} s (R² {})", quality(since->r2),
+                       chart::time_text(since->since_s), chart::decimal(since->r2));
+  }
   const double r2 = axis.r2_final;
+  if (std::isfinite(r2) && is_judged_by_before(axis, since)) {
+    return fmt::format("{} on rows mostly of before {} s", quality_of(axis, std::nullopt),
+                       chart::time_text(since->since_s));
+  }
   if (!std::isfinite(r2)) {
     return "not measured";
   }
@@ -94,6 +120,23 @@ bool is_named(const study::ChangeFound& change, std::span<const Finding> finding
          });
 }
 
+// The setting that names the velocity of every target: in full where the targets are called as
+// derivatives of inputs.
+std::string states_advice(const study::StreamResult& result) {
+  std::vector<std::string> states;
+  for (const study::AxisResult& axis : result.axes) {
+    for (const std::string_view name : differentiated(axis.name)) {
+      if (std::ranges::find(result.input_names, name) != result.input_names.end()) {
+        states.emplace_back(name);
+        break;
+      }
+    }
+  }
+  return states.size() == result.axes.size() && !states.empty()
+             ? "--set states=" + join_text(states, ",")
+             : "--set states=… names one per target";
+}
+
 // Changes without a named cause, a line for all axes with a change of one kind at one time.
 std::vector<std::string> model_lines(const study::StreamResult& result) {
   using Kind = std::tuple<double, bool, bool>;  // since when, of a past model, taken back
@@ -119,7 +162,7 @@ std::vector<std::string> model_lines(const study::StreamResult& result) {
 
 }  // namespace
 
-std::vector<std::string> input_lines(const study::StreamResult& result) {
+chart::Facts input_facts(const study::StreamResult& result) {
   const Attitude attitude = find_attitude(result.input_names);
   std::vector<std::string> commands;
   std::vector<std::string> angles;
@@ -130,22 +173,21 @@ std::vector<std::string> input_lines(const study::StreamResult& result) {
     (attitude.contains(i) ? angles : command ? commands : velocities).push_back(name);
   }
   const bool known = !result.commands.empty();
-  std::vector<std::string> lines{(known ? "velocities: " : "inputs: ") +
-                                 join_text(velocities, ", ")};
+  chart::Facts facts{{known ? "velocities" : "inputs", join_text(velocities, ", ")}};
   if (!angles.empty()) {
-    lines.push_back("attitude: " + join_text(angles, ", "));
+    facts.emplace_back("attitude", join_text(angles, ", "));
   }
   if (known) {
     Alignment told = result.alignment.alignment;
     told.water = {};
     const bool acts = !told.none();
-    lines.push_back("commands: " + join_text(commands, ", ") +
-                    (acts ? "; " + told.text(result.rate_hz) : ""));
+    facts.emplace_back("commands",
+                       join_text(commands, ", ") + (acts ? "; " + told.text(result.rate_hz) : ""));
   }
   if (!result.current.current.none()) {
-    lines.push_back("velocities are through the water: " + result.current.current.text());
+    facts.emplace_back("velocities are through the water", result.current.current.text());
   }
-  return lines;
+  return facts;
 }
 
 chart::TextTable quality_table(const study::StreamResult& result) {
@@ -155,11 +197,19 @@ chart::TextTable quality_table(const study::StreamResult& result) {
                          .rows = {},
                          .left = {0, 4},
                          .whole = true};
+  bool tells_since = false;
   for (const study::AxisResult& axis : result.axes) {
     const study::Baselines& beside = axis.baselines;
+    const Since since = study::since_change(result, axis);
+    tells_since = tells_since || is_better_since(axis, since);
     table.rows.push_back({report::name_of(axis), chart::decimal(axis.r2_final),
                           chart::decimal(beside.least_squares.r2_final),
-                          chart::decimal(beside.without_commands.r2_final), verdict_of(axis)});
+                          chart::decimal(beside.without_commands.r2_final),
+                          verdict_of(axis, since)});
+  }
+  if (tells_since) {
+    table.notes.emplace_back(
+        "The columns also count held-out rows of before the change, of another vehicle.");
   }
   return table;
 }
@@ -171,11 +221,12 @@ std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
   }
   std::ranges::move(model_lines(result), std::back_inserter(lines));
   if (lines.empty()) {
-    lines.emplace_back(result.diagnosis.why_not.empty() ? "no change of the vehicle was found"
-                                                        : "no change of the vehicle was found; "
-                                                          "causes are not looked for, since the "
-                                                          "velocities are not known by name: --set "
-                                                          "states=… names one per target");
+    lines.push_back("no change of the vehicle was found" +
+                    (result.diagnosis.why_not.empty()
+                         ? ""
+                         : "; causes are not looked for, since it is not known which velocity "
+                           "belongs to which target: " +
+                               states_advice(result)));
   }
   if (lines.size() > kTuning.most_changes) {
     const std::size_t more = lines.size() - kTuning.most_changes;
@@ -202,31 +253,35 @@ std::vector<std::string> warning_lines(const study::StreamResult& result) {
 
 bool is_poor(const study::StreamResult& result) {
   return !warning_lines(result).empty() ||
-         std::ranges::all_of(result.axes, [](const study::AxisResult& axis) {
-           return axis.r2_final <= kTuning.clear_r2;
+         std::ranges::all_of(result.axes, [&](const study::AxisResult& axis) {
+           return axis.r2_final <= kTuning.clear_r2 &&
+                  !is_better_since(axis, study::since_change(result, axis));
          });
 }
 
-std::string verdict_of(const study::AxisResult& axis) {
-  std::string quality = quality_of(axis);
-  if (!(axis.r2_final > kTuning.clear_r2)) {
+std::string verdict_of(const study::AxisResult& axis,
+                       const std::optional<study::SinceChange>& since) {
+  std::string quality = quality_of(axis, since);
+  if (!(axis.r2_final > kTuning.clear_r2) || is_better_since(axis, since)) {
     return quality;
   }
   const double behind = axis.baselines.least_squares.r2_final - axis.r2_final;
   if (behind > kTuning.clear_r2) {
     return fmt::format("{}; least squares is better by {:.2f}", quality, behind);
   }
-  return quality + (commands_say_nothing(axis) ? "; the commands say nothing" : "");
+  return quality +
+         (commands_say_nothing(axis) ? "; the commands say nothing to least squares" : "");
 }
 
 std::string quality_sentence(const study::StreamResult& result) {
   std::vector<std::string> words;
   std::vector<std::vector<std::string>> axes;
   for (const study::AxisResult& axis : result.axes) {
-    const auto found = std::ranges::find(words, quality_of(axis));
+    const std::string quality = quality_of(axis, study::since_change(result, axis));
+    const auto found = std::ranges::find(words, quality);
     const auto place = static_cast<std::size_t>(found - words.begin());
     if (found == words.end()) {
-      words.push_back(quality_of(axis));
+      words.push_back(quality);
       axes.emplace_back();
     }
     axes[place].push_back(report::name_of(axis));
@@ -257,8 +312,8 @@ std::string headline(const study::StreamResult& result) {
 
 std::string verdict_text(const study::StreamResult& result) {
   std::string text = learned_line(result);
-  for (const std::string& inputs : input_lines(result)) {
-    text += line(inputs);
+  for (const auto& [kind, inputs] : input_facts(result)) {
+    text += line(kind + ": " + inputs);
   }
   text += "\n" + chart::table_text(quality_table(result));
   for (const std::string& change : vehicle_lines(result)) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "chart/page.hpp"
 #include "chart/text_table.hpp"
 #include "study/result.hpp"
+#include "study/summary.hpp"
 
 namespace kelpie::report {
 
@@ -16,8 +19,8 @@ std::string verdict_text(const study::StreamResult& result);
 
 // The parts, for a page as well.
 
-/// The inputs by what each is taken for: "velocities: u, v, r"; "commands: th1, th2; …".
-std::vector<std::string> input_lines(const study::StreamResult& result);
+/// The inputs by what each is taken for: "velocities", "u, v, r"; "commands", "th1, th2; …".
+chart::Facts input_facts(const study::StreamResult& result);
 
 /// Changes of the vehicle and since when, at most kTuning.most_changes: named causes first, then
 /// other models for no named cause, the axes of one time in one line.
@@ -30,8 +33,10 @@ std::vector<std::string> warning_lines(const study::StreamResult& result);
 bool is_poor(const study::StreamResult& result);
 
 /// How good an axis is, in words: "very good", "least squares is better by 0.06", "no better than
-/// the mean", "the commands say nothing".
-std::string verdict_of(const study::AxisResult& axis);
+/// the mean", "the commands say nothing to least squares"; where the vehicle changed and the rows
+/// `since` then are predicted clearly better than all, "good since 800 s (R² 0.892)".
+std::string verdict_of(const study::AxisResult& axis,
+                       const std::optional<study::SinceChange>& since = std::nullopt);
 
 /// The axes by how good they are: "Predictions of udot and rdot are very good, of vdot good".
 std::string quality_sentence(const study::StreamResult& result);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/quantile.hpp"
+#include "study/metrics.hpp"
 
 namespace kelpie::study {
 Quantiles quantiles_of(std::span<const double> values) {
@@ -22,6 +23,33 @@ Quantiles quantiles_of(std::span<const double> values) {
 
 double served_r2(const ValidationPoint& point) {
   return point.status.ready ? point.r2 : kUnknown;
+}
+
+std::optional<SinceChange> since_change(const StreamResult& result, const AxisResult& axis) {
+  std::optional<double> since_s;
+  const auto take = [&](double time_s) { since_s = std::max(since_s.value_or(time_s), time_s); };
+  for (const Finding& finding : result.diagnosis.findings) {
+    if (finding.state == FindingState::named) {
+      take(finding.since_s);
+    }
+  }
+  for (const ChangeFound& change : axis.changes) {
+    if (change.withdrawn == 0) {
+      take(change.since_s);
+    }
+  }
+  if (!since_s || axis.stages.empty()) {
+    return std::nullopt;
+  }
+  const StageEnd& last = axis.stages.back();
+  const auto before = static_cast<std::size_t>(std::ranges::lower_bound(last.time_s, *since_s) -
+                                               last.time_s.begin());
+  if (before == 0) {
+    return std::nullopt;
+  }
+  return SinceChange{
+      *since_s, before, last.time_s.size() - before,
+      r_squared(std::span(last.truth).subspan(before), std::span(last.predicted).subspan(before))};
 }
 
 double served_gap(const Status& status) {

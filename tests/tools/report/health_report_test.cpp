@@ -42,5 +42,23 @@ TEST(HealthReport, AFallHasAMinusSign) {
   EXPECT_NE(page.substr(title, page.find("</h1>") - title).find("surge drag −"), std::string::npos);
 }
 
+// What the terminal says of a boat whose drag rises, with a cleaning at this day.
+std::string verdict_since(double cleaning) {
+  health::HealthTable table;
+  table.quantities = {{.name = "surge drag", .unit = ""}};
+  for (int day = 0; day < 40; ++day) {
+    table.episodes.push_back({.mission = "dive", .name = "dive", .day = static_cast<double>(day)});
+    table.estimates.push_back({health::Estimate{1.0 + 0.02 * day, 0.01}});
+  }
+  return report::health_verdict(
+      {health::make_card("boat", false, table, {{"cleaning", cleaning}})});
+}
+
+TEST(HealthReport, TheTerminalSaysWhereTooFewEpisodesFollowADay) {
+  const std::string untold = "since cleaning: too few episodes to tell a change";
+  EXPECT_NE(verdict_since(37.5).find(untold), std::string::npos) << verdict_since(37.5);
+  EXPECT_EQ(verdict_since(5.5).find(untold), std::string::npos) << verdict_since(5.5);
+}
+
 }  // namespace
 }  // namespace kelpie::health_report_test

@@ -132,6 +132,69 @@ TEST(Verdict, ANamedChangeIsToldOnce) {
   EXPECT_TRUE(has(text, "since 290 s: another model")) << "for no named cause";
 }
 
+// The first axis at its end: a thruster lost at 800 s, which held-out rows before and after.
+study::StreamResult with_a_loss(std::size_t before, std::size_t after) {
+  study::StreamResult result = two_axes();
+  study::AxisResult& axis = result.axes.front();
+  study::StageEnd stage;
+  for (std::size_t i = 0; i < before + after; ++i) {
+    const double truth = i % 2 == 0 ? 1.0 : -1.0;
+    stage.time_s.push_back(800.0 + static_cast<double>(i) - static_cast<double>(before));
+    stage.truth.push_back(truth);
+    stage.predicted.push_back(i < before ? -truth : 0.6 * truth);  // R² 0.84 since then
+  }
+  axis.stages.push_back(stage);
+  axis.r2_final = -0.952;
+  Finding finding;
+  finding.since_s = 800.0;
+  finding.state = FindingState::named;
+  finding.count = 1;
+  finding.causes[0] = {CauseKind::thruster, 3, 0.7, 0.65, 0.75};
+  result.diagnosis.findings = {finding};
+  return result;
+}
+
+// Rows of before a loss are of another vehicle, and judge no model of the changed one.
+TEST(Verdict, AfterAChangeTheRowsSinceThenJudge) {
+  const study::StreamResult result = with_a_loss(300, 150);
+  const std::string text = report::verdict_text(result);
+  EXPECT_TRUE(has(text, "good since 800 s (R² 0.840)")) << text;
+  EXPECT_TRUE(has(text, "also count held-out rows of before the change")) << text;
+  EXPECT_FALSE(has(text, "worse than the mean")) << text;
+  EXPECT_EQ(report::quality_sentence(result),
+            "Predictions of axis0 are good since 800 s (R² 0.840), of axis1 very good");
+  study::StreamResult poor = with_a_loss(300, 150);
+  poor.axes.resize(1);
+  EXPECT_FALSE(report::is_poor(poor));
+  poor.diagnosis.findings.front().state = FindingState::looking;  // no change is believed
+  EXPECT_TRUE(report::is_poor(poor));
+  EXPECT_TRUE(has(report::verdict_text(poor), "worse than the mean\n"));
+}
+
+TEST(Verdict, TooFewRowsSinceAChangeAreNotEnoughForAFigure) {
+  const std::string text = report::verdict_text(with_a_loss(300, 20));
+  EXPECT_TRUE(has(text, "worse than the mean on rows mostly of before 800 s")) << text;
+  EXPECT_FALSE(has(text, "also count")) << text;
+}
+
+TEST(Verdict, TheSettingForVelocitiesIsNamedInFull) {
+  study::StreamResult result = two_axes();
+  result.diagnosis.why_not = "unknown velocities";
+  EXPECT_TRUE(has(report::vehicle_lines(result).front(), "--set states=… names one per target"));
+  result.input_names = {"u", "w", "q", "th1"};
+  result.axes[0].name = "wdot";
+  result.axes[1].name = "q_dot";
+  EXPECT_TRUE(report::vehicle_lines(result).front().ends_with(": --set states=w,q"))
+      << report::vehicle_lines(result).front();
+}
+
+// A rudder's force goes with the square of the speed times the angle: beyond least squares.
+TEST(Verdict, WhomTheCommandsSayNothingIsTold) {
+  study::AxisResult axis = two_axes().axes.front();
+  axis.baselines.without_commands.r2_final = 0.93;
+  EXPECT_EQ(report::verdict_of(axis), "very good; the commands say nothing to least squares");
+}
+
 TEST(Verdict, LinesFitAHundredColumns) {
   study::StreamResult result = two_axes();
   result.commands.clear();

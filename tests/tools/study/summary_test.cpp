@@ -29,5 +29,31 @@ TEST(Summary, R2WithoutAModelInServiceIsNotANumber) {
   EXPECT_EQ(study::served_r2(point), 0.4);
 }
 
+// A change that was taken back, or whose cause is still looked for, divides no rows.
+TEST(Summary, TheLastChangeThatStandsDividesTheHeldOutRows) {
+  study::StreamResult result;
+  study::AxisResult axis;
+  axis.stages = {{.time_s = {1.0, 2.0, 3.0, 4.0},
+                  .truth = {0.0, 1.0, 0.0, 1.0},
+                  .predicted = {1.0, 0.0, 0.0, 1.0}}};
+  EXPECT_FALSE(study::since_change(result, axis));
+  axis.changes = {{.since_s = 2.5}, {.since_s = 3.5, .withdrawn = 9}};
+  const auto since = study::since_change(result, axis);
+  ASSERT_TRUE(since);
+  EXPECT_EQ(since->since_s, 2.5);
+  EXPECT_EQ(since->before, 2U);
+  EXPECT_EQ(since->rows, 2U);
+  EXPECT_EQ(since->r2, 1.0);
+  Finding finding;
+  finding.since_s = 3.5;
+  result.diagnosis.findings = {finding};
+  EXPECT_EQ(study::since_change(result, axis)->since_s, 2.5);
+  result.diagnosis.findings.front().state = FindingState::named;
+  EXPECT_EQ(study::since_change(result, axis)->since_s, 3.5);
+  axis.changes = {{.since_s = 0.5}};
+  result.diagnosis.findings.clear();
+  EXPECT_FALSE(study::since_change(result, axis)) << "no row before";
+}
+
 }  // namespace
 }  // namespace kelpie::summary_test
