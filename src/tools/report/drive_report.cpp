@@ -110,7 +110,7 @@ chart::Extent countdown_range(const format::PlannedDrive& drive,
   }
   const chart::Extent range = chart::range_of(numbers);
   const double beside = kBesideAim * (range.high - range.low);
-  return drive.parts ? chart::Extent{range.low - beside, range.high + beside}
+  return drive.parts ? chart::Extent{range.low, range.high + beside}
                      : chart::Extent{range.low / kBelowAim, range.high * kBelowAim};
 }
 
