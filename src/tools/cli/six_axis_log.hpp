@@ -19,8 +19,7 @@ struct SixAxisOptions {
   std::string volts;
 };
 
-/// The options of `kelpie identify` and `kelpie plan` alike, beside the logs, as given.
-/// `options` without the supply of begin_six_axes().
+/// The options that `kelpie identify` and `kelpie plan` share, beside the logs, as given.
 std::string identification_text(const IdentificationOptions& options, const SixAxisOptions& six);
 
 /// Throws InputError (--volts) where a supply is given and the log is identified in the plane.

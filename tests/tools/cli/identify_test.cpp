@@ -287,10 +287,15 @@ TEST_F(Identify, SaysThatFinsAreNotInTheEquation) {
   std::string text = content("log.csv");
   write("fins.csv", text.replace(text.find("th3"), 3, "stern_plane2"));
   expect_refused("fins.csv", "stern_plane2: is a fin by its name");
-  // One thruster alone tells no inertia of sway.
-  write("one.csv", text.replace(text.find("th2"), 3, "rudder"));
-  expect_refused("one.csv --thrusters th1",
-                 "every thruster runs by itself; rudder, stern_plane2 are fins by their names");
+  // A log that tells too little may do so because of what the equation lacks.
+  text.replace(text.find("th2"), 3, "rudder");
+  write("short.csv", text.substr(0, text.find("\n4,")));
+  const Outcome outcome = run("identify short.csv --split tail --thrusters th1 --out refused");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("too few rows"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("; rudder, stern_plane2 are fins by their names: forces of fins"),
+            std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(Identify, PrintsItsParametersAsJson) {
