@@ -9,10 +9,11 @@ from typing import Any, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arrays, _kelpie
+from . import _arrays, _frames, _kelpie
 from ._arrays import Floats
-from ._clock import Clock, index_times, require_rate
+from ._clock import TIMES, Clock, checked_rate, index_times, require_rate
 from ._contract import BaseEstimator, NotFittedError, TransformerMixin
+from ._learner import Learner
 from ._parameters import ParameterAccess
 
 _AT_ONCE = {"neutral": 0.0, "dead_band": 0.0, "astern": 1.0, "lag_s": 0.0, "rate": 0.0,
@@ -49,10 +50,12 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
     rate_ : rows per second [Hz].
     commands_ : names of the aligned columns.
     actuators_ : a dict for each of these, with all keys of `actuators`; [] where all act at once.
-    gain_ : share of the variance unexplained without alignment.
+    gain_ : share of the variance unexplained without alignment that the alignment explains.
     why_ : the reason, in words.
     n_features_in_, feature_names_in_ : as in scikit-learn.
     """
+
+    _of_model = False  # whether the numbers are those of a model, not of fit()
 
     def __init__(self, *, shift: Union[str, float] = "auto",
                  actuators: Sequence[dict[str, Any]] = (), rate: Optional[float] = None,
@@ -82,6 +85,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         self.rate_ = require_rate(self.rate, "X") if t is None or self.rate is not None else (
             _measured_rate(Clock().times(t, len(rows), 0, None)))
         times = self._times(X, t, len(rows))
+        self._of_model = False
         columns = _arrays.column_names(X)
         names = columns or [f"x{i}" for i in range(rows.shape[1])]
         states = "auto" if self.states is None else ",".join(self.states)
@@ -97,6 +101,33 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
             self.feature_names_in_ = np.array(columns, dtype=object)
         return self
 
+    @classmethod
+    def of(cls, model: Learner, rate: Optional[float] = None) -> Alignment:
+        """The shift and the actuators of a loaded model; needs no fit().
+
+        Of a data frame transform() takes the model's inputs by name, and the times of a column t,
+        time or stamp, unless they are given. `rate` [Hz] may be left out where there are times.
+        A current stays in the velocities.
+
+        Raises NotFittedError, or ValueError on a wrong rate.
+        """
+        found = model._alignment()
+        alignment = cls(shift=found.get("shift_s", 0.0), actuators=found.get("actuators", []),
+                        rate=rate)
+        alignment._of_model = True
+        alignment.shift_s_, alignment.rows_ = alignment.shift, found.get("rows", 0)
+        alignment.commands_, alignment.actuators_ = found.get("commands", []), alignment.actuators
+        alignment.gain_, alignment.why_ = 0.0, "as the model has it"
+        if rate is None and alignment.rows_:
+            rate = alignment.rows_ / alignment.shift_s_
+        alignment.rate_ = None if rate is None else checked_rate(rate)
+        names = model.inputs_
+        alignment._places = [names.index(name) for name in alignment.commands_]
+        alignment.n_features_in_ = len(names)
+        alignment.feature_names_in_ = np.array(names, dtype=object)
+        model._untold = {what: text for what, text in model._untold.items() if what != "commands"}
+        return alignment
+
     def transform(self, X: ArrayLike, t: Optional[ArrayLike] = None) -> Floats:
         """The rows X (n, inputs) of one log in their order, with aligned commands.
 
@@ -105,9 +136,32 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         if "rows_" not in vars(self):
             raise NotFittedError(f"This {type(self).__name__} instance is not fitted yet. Call "
                                  "'fit' with appropriate arguments before using this estimator.")
+        if self._of_model:
+            return self._as_the_model(X, t)
         rows = _arrays.matrix(X)
         _arrays.require_same_columns(self, X, rows)
         return self._aligned(rows, self._times(X, t, len(rows)))
+
+    def _as_the_model(self, X: Any, t: Any) -> Floats:
+        names = list(self.feature_names_in_)
+        if _frames.is_frame(X):
+            _frames.require_inputs(X, names)
+            usual = [name for name in TIMES if name in X.columns and name not in names]
+            if t is None and index_times(X) is None and usual:
+                t = X[usual[0]]
+            X = X[names] if set(names) <= set(X.columns) else X
+        rows = _arrays.matrix(X)
+        _arrays.require_width(self, rows)
+        t = index_times(X) if t is None else t
+        rate = self.rate_
+        if t is None:
+            rate = require_rate(rate, "X")
+        times = Clock().times(t, len(rows), 0, rate)
+        if self.rate is None and t is not None and len(rows) > 1:
+            rate = _measured_rate(times)  # of this log, not of the model's
+        rate = 1.0 if rate is None else rate  # of a single row
+        return _kelpie.align(rows, times, rate, int(np.rint(self.shift_s_ * rate)), self._places,
+                             self.actuators_)
 
     def fit_transform(self, X: ArrayLike, y: ArrayLike, t: Optional[ArrayLike] = None) -> Floats:
         """fit(), then transform() of the same rows."""

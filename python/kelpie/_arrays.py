@@ -108,12 +108,17 @@ def column_names(values: Any) -> Optional[list[str]]:
 
 def require_same_columns(estimator: Any, values: Any, array: Floats) -> None:
     """Compares a matrix with the columns that a fitted estimator has seen: ValueError on others."""
-    owner = type(estimator).__name__
     fitted = getattr(estimator, "feature_names_in_", None)
-    compare_names(column_names(values), None if fitted is None else list(fitted), owner)
+    compare_names(column_names(values), None if fitted is None else list(fitted),
+                  type(estimator).__name__)
+    require_width(estimator, array)
+
+
+def require_width(estimator: Any, array: Floats) -> None:
+    """Raises ValueError on another number of columns than a fitted estimator has seen."""
     if array.shape[1] != estimator.n_features_in_:
-        raise ValueError(f"X has {array.shape[1]} features, but {owner} is expecting "
-                         f"{estimator.n_features_in_} features as input")
+        raise ValueError(f"X has {array.shape[1]} features, but {type(estimator).__name__} is "
+                         f"expecting {estimator.n_features_in_} features as input")
 
 
 def compare_names(now: Optional[list[str]], fitted: Optional[list[str]], owner: str) -> None:

@@ -54,6 +54,8 @@ class DeadReckoning:
     def update(self, x: ArrayLike, t: float, covariance: Optional[ArrayLike] = None) -> None:
         """Advances to the time t [s] with one row of inputs; NaN: velocity not measured.
 
+        Commands are taken as given, without the model's actuators and shift.
+
         `covariance` of the measured velocities, over all states; default: the model's noise.
         """
         given = [] if covariance is None else np.ravel(_arrays.floats(covariance, "covariance"))

@@ -72,7 +72,7 @@ status_ : buffer, support vectors and totals of every target.
 n_features_in_, feature_names_in_ : as in scikit-learn.
 
 A pickle keeps the whole state: an unpickled estimator continues to learn, to the last bit, as if
-never stopped. save() and load() keep the state for predictions only.
+never stopped. save() and load() keep predictions, and partial_fit() goes on from them.
 """
 
 

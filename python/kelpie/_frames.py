@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Optional
 
@@ -105,8 +106,7 @@ def _require(X: Any, names: Sequence[str], what: str) -> None:
 def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
     names = [str(name) for name, kind in zip(X.columns, X.dtypes) if _kind(kind) in _NUMBERS]
     targets = [targets] if isinstance(targets, str) else targets
-    ins, outs, time = _kelpie.guess_roles(names + _stamp_names(X), list(inputs or []),
-                                          list(targets or []))
+    ins, outs, time = _guessed(names + _stamp_names(X), list(inputs or []), list(targets or []))
     _require(X, ins, "inputs")
     _require(X, outs, "targets")
     is_of_frame = t is None or isinstance(t, str)
@@ -123,6 +123,18 @@ def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
         whole &= _known(t)
     y = X[outs[0]] if len(outs) == 1 else X[outs]
     return Given(X[ins][whole], y[whole], None if t is None else _rows(t, whole), True)
+
+
+def _guessed(names: list[str], inputs: list[str],
+             targets: list[str]) -> tuple[list[str], list[str], str]:
+    try:
+        return _kelpie.guess_roles(names, inputs, targets)
+    except ValueError as error:
+        text = re.sub(r"--(\w+)", r"\1=", str(error).replace("columns: ", "X: ", 1))
+        if "targets=" in text:
+            text += ("; of a CSV file without accelerations, read_log(file, draft=True) gives "
+                     "slopes of velocities, as `kelpie learn` takes them")
+        raise ValueError(text) from None
 
 
 def _stamp_names(X: Any) -> list[str]:

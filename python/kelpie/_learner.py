@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import warnings
 from collections.abc import Mapping
@@ -33,6 +34,8 @@ class Learner(Parameters):
 
     _model: Union[_kelpie.LiveModel, _kelpie.TrainedModel]  # there once fitted
     _notes: Optional[tuple[dict[str, str], str]] = None  # units and doubt of the model.json before
+    # What the model.json did to rows before the model saw them, until the warning.
+    _untold: Mapping[str, str] = {}
     _clock: Clock
     _flat: bool  # whether y is of shape (n,)
     _by_name = False  # whether columns of data frames are chosen by the names of the inputs
@@ -91,6 +94,7 @@ class Learner(Parameters):
         seen = self._as_seen(given.X) if given.by_name else given.X
         rows, targets = self._checked(seen, given.y)
         _arrays.require_same_columns(self, seen, rows)
+        self._tell_alignment()
         if isinstance(self._model, _kelpie.TrainedModel):
             start = self._clock.times(given.t, len(rows), 0, self.rate)[0]
             if isinstance(self._model, _kelpie.SavedModel):
@@ -109,7 +113,8 @@ class Learner(Parameters):
                 return_interval: bool = False) -> Any:
         """Predictions of the rows X (n, inputs), of the shape and in the units of y.
 
-        Before a model is in service, the mean of the targets so far.
+        Before a model is in service, the mean of the targets so far. X is taken as given: a
+        model.json with an alignment or a current warns once (Alignment.of(), `kelpie predict`).
 
         With `return_interval`, a tuple with the ends of the interval, which holds the next sample
         with the share `coverage` (assess() tells more). With `return_std`, a tuple with the
@@ -152,9 +157,10 @@ class Learner(Parameters):
     def _assessed(self, X: ArrayLike, ahead_s: ArrayLike) -> NDArray[np.void]:
         model = self._fitted()
         rows = self._inputs(X)
+        ahead = _arrays.seconds_ahead(ahead_s, len(rows))
         if isinstance(model, _kelpie.TrainedModel):
             return self._shaped(model.assess(rows))
-        return self._shaped(model.assess(rows, _arrays.seconds_ahead(ahead_s, len(rows))))
+        return self._shaped(model.assess(rows, ahead))
 
     def predict_with_jacobian(self, X: ArrayLike) -> tuple[Floats, Floats]:
         """predict(), and its exact derivatives by the inputs, in the units of the log.
@@ -194,6 +200,8 @@ class Learner(Parameters):
     def load(cls: type[Self], file: Union[str, os.PathLike[str]]) -> Self:
         """Reads a model.json; predictions equal those of the saved model.
 
+        Alignment.of() gives the rows of a log the alignment that `kelpie learn` found.
+
         Raises ValueError naming file and key if the file is not a valid model.json,
         FileNotFoundError if there is none.
         """
@@ -205,6 +213,7 @@ class Learner(Parameters):
                      **_settings.parameters(model.settings, len(model.targets)))
         loaded._adopt(model, flat=loaded._takes_one_target())
         loaded._by_name = True
+        loaded._untold = _effects(loaded._alignment())
         return loaded
 
     @property
@@ -264,9 +273,9 @@ class Learner(Parameters):
 
     @property
     def alignment_s_(self) -> float:
-        """The lag of commands in the alignment of a loaded model [s]; 0 without alignment.
+        """The lag of commands in the alignment of a loaded model [s]; 0 without a lag.
 
-        For Alignment(shift=..., actuators=...), to align rows of a log before predict().
+        Alignment.of() aligns rows of a log by lag and actuators before predict().
         """
         return self._fitted().alignment_s
 
@@ -316,9 +325,19 @@ class Learner(Parameters):
         trained = model.trained()
         return trained.noted(*self._notes) if self._notes else trained
 
+    def _alignment(self) -> dict[str, Any]:
+        """The alignment under the keys of model.json; empty without."""
+        return json.loads(self._trained().json()).get("alignment") or {}
+
+    def _tell_alignment(self) -> None:
+        texts, self._untold = list(self._untold.values()), {}
+        for text in texts:
+            warnings.warn(text, UserWarning, stacklevel=4)
+
     def _adopt(self, model: Union[_kelpie.LiveModel, _kelpie.TrainedModel], flat: bool) -> None:
         self._model = model
         self._notes = None
+        self._untold = {}
         self._flat = flat
         self._clock = Clock()
         self.n_features_in_ = len(model.inputs)
@@ -412,6 +431,7 @@ class Learner(Parameters):
         X = X if chosen is None else self._as_seen(chosen)
         rows = _arrays.matrix(X)
         _arrays.require_same_columns(self, X, rows)
+        self._tell_alignment()
         return rows
 
     def _shaped(self, values: NDArray[Any]) -> NDArray[Any]:
@@ -425,3 +445,22 @@ def _names(given: Word, what: str, letter: str, count: int) -> list[str]:
     if len(names) != count:
         raise ValueError(f"{what}: {len(names)} names for {count} columns")
     return names
+
+
+def _effects(alignment: Mapping[str, Any]) -> dict[str, str]:
+    """What an alignment did to the rows that the model saw, as warnings."""
+    found = {}
+    ways = [f"{alignment['shift_s']:g} s later"] if alignment.get("rows") else []
+    ways += ["through their actuators"] if alignment.get("actuators") else []
+    if ways:
+        found["commands"] = (
+            f"X: the model learned commands ({', '.join(alignment['commands'])}) "
+            f"{' and '.join(ways)}, and X is taken as given. "
+            "kelpie.Alignment.of(model).transform(log) gives aligned rows")
+    if alignment.get("current"):
+        water = alignment["current"]
+        found["current"] = (
+            f"X: the model learned {water['surge']} and {water['sway']} through the water, in a "
+            "current, and X is taken as given. `kelpie predict` and `kelpie rollout` know the "
+            "current")
+    return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import errno
 import os
+import tempfile
 from collections.abc import Sequence
 from typing import Any, Optional, Union
 
@@ -41,7 +42,7 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
              columns: Optional[Sequence[str]] = None, clock: str = "receive",
              messages: Optional[_Path] = None, recover: bool = False, strict: bool = False,
              frame: Optional[bool] = None, pose: Optional[Sequence[str]] = None,
-             inputs: Optional[Sequence[str]] = None, rate: float = 0.0) -> Any:
+             inputs: Optional[Sequence[str]] = None, rate: float = 0.0, draft: bool = False) -> Any:
     """Reads a log of any kind that kelpie knows: CSV, or a recording of messages.
 
     Parameters
@@ -62,6 +63,9 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     inputs : beside `pose`, the inputs (velocities of the pose, commands, ...). Default: the
         velocities and the commands that are known by name.
     rate : beside `pose`, rows per second. Default: as poses come, at most 10.
+    draft : of a CSV file without the usual names or accelerations, the rows that `kelpie learn`
+        guesses: inputs in SI units, and slopes of velocities as targets, at one rate. Recordings are
+        read so by default.
     frame : True for a pandas data frame, False for a dict of arrays (LogArrays). Default: a data
         frame where pandas is installed.
 
@@ -88,12 +92,16 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
                          "them")
     if pose is None and (inputs is not None or rate != 0.0):
         raise ValueError("inputs: and rate stand beside pose; a config says both otherwise")
+    if draft and not (config is None and columns is None and pose is None):
+        raise ValueError("draft: is guessed where neither config nor columns nor pose say what to "
+                         "read")
     if frame and pandas is None:
         raise ImportError("frame: pandas isn't installed; without it there are arrays (frame=False)")
-    found = _kelpie.read_log(existing(path), "" if config is None else existing(config),
-                             list(columns or []), clock == "header",
-                             "" if messages is None else os.fspath(messages), recover, strict,
-                             list(pose or []), list(inputs or []), rate)
+    with tempfile.NamedTemporaryFile(prefix="kelpie-", suffix=".toml") as empty:  # drafts are made
+        given = empty.name if draft else "" if config is None else existing(config)
+        found = _kelpie.read_log(existing(path), given, list(columns or []), clock == "header",
+                                 "" if messages is None else os.fspath(messages), recover, strict,
+                                 list(pose or []), list(inputs or []), rate)
     log = LogArrays(found["columns"])
     for name, words in found["words"].items():
         log[name] = _with_words(log[name], words)

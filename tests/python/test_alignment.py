@@ -3,6 +3,7 @@
 
 import json
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -204,3 +205,102 @@ def test_data_frames_come_out_where_they_are_wanted():
         kelpie.Alignment().fit(X, y)
     timed = kelpie.Alignment().fit(X, y, t)
     assert timed.rate_ == pytest.approx(10.0) and timed.rows_ == 3
+
+
+def with_alignment(file, model, alignment):
+    """Saves the model with an alignment, as `kelpie learn` does."""
+    model.save(file)
+    saved = json.loads(file.read_text())
+    saved["alignment"] = alignment
+    file.write_text(json.dumps(saved))
+    return file
+
+
+LAGGING = {"shift_s": 0.0, "rows": 0, "commands": ["n1", "n2"], "actuators": [
+    {"command": name, "neutral": 0.0, "dead_band": 0.0, "astern": 1.0, "lag_s": 0.8,
+     "rate": 0.0, "delay_s": 0.0} for name in ("n1", "n2")]}
+SHIFTED = {"shift_s": 0.3, "rows": 3, "commands": ["n1", "n2"]}
+
+
+@pytest.fixture(scope="module")
+def learned():
+    """A model of rotors, with the commands that were sent."""
+    sent, rotors, y = sluggish(1500)
+    model = kelpie.DynamicsModel(inputs=INPUTS, rate=10.0, warmup=50, buffer=100).fit(rotors, y)
+    return model, sent, y
+
+
+@pytest.mark.parametrize("alignment, words", [(LAGGING, "through their actuators"),
+                                              (SHIFTED, "0.3 s later")])
+def test_a_loaded_model_that_had_aligned_rows_says_so_once(learned, tmp_path, alignment, words):
+    model, X, y = learned
+    file = with_alignment(tmp_path / "model.json", model, alignment)
+    for use in (lambda m: m.predict(X), lambda m: m.assess(X), lambda m: m.score(X, y),
+                lambda m: m.predict_with_jacobian(X), lambda m: m.rollout(X[:5]),
+                lambda m: m.partial_fit(X[:5], y[:5])):
+        loaded = kelpie.DynamicsModel.load(file).set_params(rate=10.0)
+        with pytest.warns(UserWarning, match=rf"commands \(n1, n2\) {words}.*Alignment\.of\(model"):
+            use(loaded)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            use(loaded)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        model.predict(X)
+        told = kelpie.DynamicsModel.load(file)
+        kelpie.Alignment.of(told)
+        assert np.array_equal(told.predict(X), model.predict(X))
+
+
+def test_a_loaded_model_with_a_current_says_who_knows_it(learned, tmp_path):
+    model, X, _ = learned
+    water = {"heading": "psi", "unit_rad": 1.0, "surge": "u", "sway": "v", "yaw_rate": "n1",
+             "targets": [0, 1], "times_s": [0.0], "velocity_m_s": [[0.3, -0.2]]}
+    file = with_alignment(tmp_path / "model.json", model,
+                          {"shift_s": 0.0, "rows": 0, "commands": ["n1", "n2"], "current": water})
+    loaded = kelpie.DynamicsModel.load(file)
+    kelpie.Alignment.of(loaded)
+    with pytest.warns(UserWarning, match="u and v through the water.*`kelpie predict`") as told:
+        loaded.predict(X)
+    assert len(told) == 1
+
+
+@pytest.mark.parametrize("found", [LAGGING, SHIFTED])
+def test_the_alignment_of_a_loaded_model(learned, tmp_path, found):
+    pandas = pytest.importorskip("pandas")
+    model, X, y = learned
+    loaded = kelpie.DynamicsModel.load(with_alignment(tmp_path / "model.json", model, found))
+    given = kelpie.Alignment(shift=found["shift_s"], actuators=found.get("actuators", []),
+                             rate=10.0).fit(pandas.DataFrame(X, columns=INPUTS), y)
+    right = given.transform(pandas.DataFrame(X, columns=INPUTS))
+    assert not np.array_equal(right, X)
+    t = 0.1 * np.arange(len(X))
+    log = pandas.DataFrame(X[:, ::-1], columns=INPUTS[::-1]).assign(depth=1.0, t=t)
+    alignment = kelpie.Alignment.of(loaded)
+    assert alignment.commands_ == ["n1", "n2"] and alignment.shift_s_ == found["shift_s"]
+    np.testing.assert_allclose(alignment.transform(log), right, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(alignment.transform(X, t), right, rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(kelpie.Alignment.of(loaded, rate=10.0).transform(X), right)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(alignment)).transform(log),
+                                  alignment.transform(log))
+    if found is LAGGING:
+        assert loaded.score(alignment.transform(log), y) > 0.9 > loaded.score(X, y) + 0.05
+    else:  # half as many rows per second: half as many rows later
+        slow = kelpie.Alignment.of(loaded).transform(X[::2], 0.25 * np.arange(len(X) // 2))
+        np.testing.assert_array_equal(slow[:-1, 2:], X[::2][1:, 2:])
+    with pytest.raises(ValueError, match="lacks the model's inputs n2"):
+        alignment.transform(log.drop(columns="n2"))
+    with pytest.raises(ValueError, match="features"):
+        alignment.transform(X[:, :3], t)
+    assert np.array_equal(kelpie.Alignment.of(model).transform(X, t), X)
+
+
+def test_the_alignment_of_a_model_wants_times_for_actuators(learned, tmp_path):
+    model, X, _ = learned
+    loaded = kelpie.DynamicsModel.load(with_alignment(tmp_path / "model.json", model, LAGGING))
+    with pytest.raises(ValueError, match="rate: isn't known"):
+        kelpie.Alignment.of(loaded).transform(X)
+    with pytest.raises(ValueError, match="rate: 0.0 is out of range"):
+        kelpie.Alignment.of(loaded, rate=0.0)
+    with pytest.raises(ValueError, match="not fitted"):
+        kelpie.Alignment.of(kelpie.DynamicsModel())

@@ -138,7 +138,7 @@ def test_intervals_hold_their_share(log, learned):
     assert (novelty[-1] == 1.0).all() and (novelty[:100].mean() < 0.9)
 
 
-def test_disturbance_is_one_step_ahead_and_fades(log):
+def test_disturbance_is_one_step_ahead_and_fades(log, tmp_path):
     rng = np.random.default_rng(1)
     push = np.zeros((600, 2))
     for row in range(1, 600):
@@ -156,9 +156,11 @@ def test_disturbance_is_one_step_ahead_and_fades(log):
         assert np.allclose(model.decisions_[0][field], told[field], rtol=0, atol=1e-9)
     alone = y[400:] - model.decisions_["predicted"]
     assert ((alone - model.decisions_["disturbance"]) ** 2).mean() < 0.8 * (alone ** 2).mean()
-    for wrong in (-1.0, [0.0, 1.0], [[0.0]], np.nan):
-        with pytest.raises(ValueError, match="ahead_s|inconsistent"):
-            model.assess(log.X[:3], ahead_s=wrong)
+    model.save(tmp_path / "model.json")
+    for either in (model, kelpie.DynamicsModel.load(tmp_path / "model.json")):
+        for wrong in (-1.0, [0.0, 1.0], [[0.0]], np.nan):
+            with pytest.raises(ValueError, match="ahead_s|inconsistent"):
+                either.assess(log.X[:3], ahead_s=wrong)
 
 
 def test_jacobian_is_the_derivative(log, learned):

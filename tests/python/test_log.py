@@ -62,6 +62,38 @@ def test_a_data_frame_is_learned_as_the_command_learns(build_dir, tmp_path):
     assert np.array_equal(model.predict(frame.dropna()), theirs.predict(frame.dropna()))
 
 
+def test_a_log_without_accelerations_is_learned_as_the_command_learns(build_dir, tmp_path):
+    pytest.importorskip("pandas")
+    command = build_dir / "kelpie"
+    if not command.exists():
+        pytest.skip("the command isn't built")
+    velocities = tmp_path / "velocities.csv"
+    frame = drive()
+    np.savetxt(velocities, np.column_stack([0.2 * np.arange(len(frame)), frame[:, :4]]),
+               delimiter=",", comments="", header="t,surge [kn],yaw_rate,rpm,rudder")
+    subprocess.run([command, "learn", velocities, "--split", "none", "--align", "none",
+                    "--set", "buffer=60", "--out", tmp_path], check=True, capture_output=True)
+    theirs = kelpie.DynamicsModel.load(tmp_path / "model.json")
+    log = kelpie.read_log(velocities, draft=True)
+    assert "derived" in log.attrs["draft"] and log.attrs["targets"] == theirs.targets_
+    model = kelpie.DynamicsModel(buffer=60).fit(log)
+    assert model.inputs_ == theirs.inputs_ == log.attrs["inputs"]
+    assert np.array_equal(model.predict(log.dropna()), theirs.predict(log.dropna()))
+
+
+def test_a_log_without_accelerations_is_refused_in_words_of_python(tmp_path):
+    pytest.importorskip("pandas")
+    file = tmp_path / "log.csv"
+    np.savetxt(file, drive()[:, :4], delimiter=",", comments="", header="u,r,n,m")
+    log = kelpie.read_log(file)
+    assert log.attrs["draft"] is None and list(log) == ["u", "r", "n", "m"]
+    with pytest.raises(ValueError, match=r"targets=.*read_log\(file, draft=True\)") as told:
+        kelpie.DynamicsModel(rate=5.0).fit(log)
+    assert "--" not in str(told.value)
+    with pytest.raises(ValueError, match="draft: is guessed where"):
+        kelpie.read_log(file, draft=True, pose=["x", "y"])
+
+
 def test_columns_of_messages_with_units():
     columns = ["ATTITUDE:rollspeed", "VFR_HUD:groundspeed"]
     log = kelpie.read_log(real_log("logs/ardusub_small.tlog"), columns=columns, frame=False)
