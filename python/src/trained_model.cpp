@@ -152,47 +152,57 @@ SavedModel noted(const TrainedModel& model, const format::ColumnUnits& units,
   return saved;
 }
 
-void bind_saved_model(py::module_& module) {
-  py::class_<SavedModel, TrainedModel>(
-      module, "SavedModel", "A TrainedModel with the units, doubt and logs of its model.json.")
-      .def_property_readonly("units", [](const SavedModel& model) { return model.info.units; })
-      .def_property_readonly(
-          "doubt", [](const SavedModel& model) { return model.info.doubt; },
-          "What cannot be right in the learned targets; empty without a reason.")
-      .def(
-          "json", [](const SavedModel& model) { return format::model_json(model, model.info); },
-          "The text of a model.json.")
+std::string json_of(const TrainedModel& model) {
+  return format::model_json(model);
+}
+
+std::string json_of(const SavedModel& model) {
+  return format::model_json(model, model.info);
+}
+
+// The text of a model.json, in files and pickles, too; `parse` reads a model from the text.
+template <typename Model, typename... Base>
+void bind_json(py::class_<Model, Base...>& type,
+               Model (*parse)(const std::string& text, const std::string& source)) {
+  type.def(
+          "json", [](const Model& model) { return json_of(model); }, "The text of a model.json.")
       .def(
           "write",
-          [](const SavedModel& model, const std::string& file) {
-            file::write_file_whole(file, format::model_json(model, model.info));
+          [](const Model& model, const std::string& file) {
+            file::write_file_whole(file, json_of(model));
           },
           py::arg("file"), "Writes a model.json, whole or not at all; RuntimeError on failure.")
-      .def(py::pickle([](const SavedModel& model) { return format::model_json(model, model.info); },
-                      [](const std::string& text) { return parse(text, "pickle"); }));
+      .def(py::pickle([](const Model& model) { return json_of(model); },
+                      [parse](const std::string& text) { return parse(text, "pickle"); }));
+}
+
+TrainedModel parse_plain(const std::string& text, const std::string& source) {
+  return format::parse_model_json(text, source);
+}
+
+void bind_saved_model(py::module_& module) {
+  py::class_<SavedModel, TrainedModel> type(
+      module, "SavedModel", "A TrainedModel with the units, doubt and logs of its model.json.");
+  bind_json(type, &parse);
+  type.def_property_readonly("units", [](const SavedModel& model) { return model.info.units; })
+      .def_property_readonly(
+          "doubt", [](const SavedModel& model) { return model.info.doubt; },
+          "What cannot be right in the learned targets; empty without a reason.");
 }
 
 }  // namespace
 
 void bind_trained_model(py::module_& module) {
-  py::class_<TrainedModel>(module, "TrainedModel",
-                           "A model that no longer learns: what model.json holds.")
-      .def_static("parse", &parse, py::arg("text"), py::arg("source"),
+  py::class_<TrainedModel> type(module, "TrainedModel",
+                                "A model that no longer learns: what model.json holds.");
+  bind_json(type, &parse_plain);
+  type.def_static("parse", &parse, py::arg("text"), py::arg("source"),
                   "Reads the text of a model.json; ValueError naming `source` and the key.")
       .def_static("read", &read, py::arg("file"),
                   "Reads a model.json; ValueError naming the file and the key, UserWarning with a "
                   "doubt.")
       .def("noted", &noted, py::arg("units"), py::arg("doubt"),
            "The model with what a model.json says of units and doubt.")
-      .def(
-          "json", [](const TrainedModel& model) { return format::model_json(model); },
-          "The text of a model.json.")
-      .def(
-          "write",
-          [](const TrainedModel& model, const std::string& file) {
-            file::write_file_whole(file, format::model_json(model));
-          },
-          py::arg("file"), "Writes a model.json, whole or not at all; RuntimeError on failure.")
       .def("predict", &predict, py::arg("X").noconvert(), "(n, axes)")
       .def("assess", &assess, py::arg("X").noconvert(),
            "Value, interval and novelty, a structured array (n, axes).")
@@ -212,10 +222,7 @@ void bind_trained_model(py::module_& module) {
           "How much later the commands stood that the model saw in a row [s].")
       .def_property_readonly(
           "actuators", [](const TrainedModel& model) { return actuators_of(model.alignment); },
-          "Through which the model saw the commands; a dict each.")
-      .def(py::pickle(
-          [](const TrainedModel& model) { return format::model_json(model); },
-          [](const std::string& text) { return format::parse_model_json(text, "pickle"); }));
+          "Through which the model saw the commands; a dict each.");
   bind_saved_model(module);
 }
 
