@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Optional
 
@@ -29,16 +30,17 @@ def is_frame(values: Any) -> bool:
     return hasattr(values, "columns") and hasattr(values, "dtypes")
 
 
-def taken(X: Any, y: Any, t: Any, inputs: Any, targets: Any) -> Given:
+def taken(X: Any, y: Any, t: Any, inputs: Any, targets: Any, by_values: bool = False) -> Given:
     """X, y and t of a call. Of a data frame the columns that are named, or those guessed where y is
-    left out. Raises ValueError on a name that no column has.
+    left out; with `by_values` as `kelpie learn` guesses, without constants, counters and columns
+    that equal another. Raises ValueError on a name that no column has.
     """
     if not is_frame(X):
         if isinstance(t, str):
             raise ValueError(f"t: '{t}' would be a column of X, which is no data frame")
         return Given(X, y, t, False)
     if y is None:
-        return _whole_log(X, t, inputs, targets)
+        return _whole_log(X, t, inputs, targets, by_values)
     stamps, rest = index_times(X) if t is None else t, X
     if isinstance(t, str):
         _require(X, [t], "t")
@@ -103,10 +105,19 @@ def _require(X: Any, names: Sequence[str], what: str) -> None:
                              f"{', '.join(str(column) for column in X.columns)}")
 
 
-def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
+def _whole_log(X: Any, t: Any, inputs: Any, targets: Any, by_values: bool) -> Given:
     names = [str(name) for name, kind in zip(X.columns, X.dtypes) if _kind(kind) in _NUMBERS]
     targets = [targets] if isinstance(targets, str) else targets
-    ins, outs, time = _guessed(names + _stamp_names(X), list(inputs or []), list(targets or []))
+    given = (names + _stamp_names(X), list(inputs or []), list(targets or []))
+    ins, outs, time = _guessed(*given, np.empty((0, len(names))))
+    if by_values:
+        told, by_names = list(map(str, X.columns)), ins + outs
+        ins, outs, time = _guessed(*given, _numbers(X, names))
+        left = sorted(set(by_names) - set(ins + outs), key=told.index)
+        if left:
+            warnings.warn(f"X: {', '.join(left)}: left out, as `kelpie learn` does: constant, a "
+                          "counter of rows, or equal to another column. inputs= keeps them",
+                          UserWarning, stacklevel=5)
     _require(X, ins, "inputs")
     _require(X, outs, "targets")
     is_of_frame = t is None or isinstance(t, str)
@@ -125,10 +136,14 @@ def _whole_log(X: Any, t: Any, inputs: Any, targets: Any) -> Given:
     return Given(X[ins][whole], y[whole], None if t is None else _rows(t, whole), True)
 
 
-def _guessed(names: list[str], inputs: list[str],
-             targets: list[str]) -> tuple[list[str], list[str], str]:
+def _numbers(X: Any, names: list[str]) -> Any:
+    return np.ascontiguousarray(X[names].to_numpy(dtype=float))
+
+
+def _guessed(names: list[str], inputs: list[str], targets: list[str],
+             values: Any) -> tuple[list[str], list[str], str]:
     try:
-        return _kelpie.guess_roles(names, inputs, targets)
+        return _kelpie.guess_roles(names, inputs, targets, values)
     except ValueError as error:
         text = re.sub(r"--(\w+)", r"\1=", str(error).replace("columns: ", "X: ", 1))
         if "targets=" in text:

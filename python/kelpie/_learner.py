@@ -49,8 +49,9 @@ class Learner(Parameters):
         X : (n, inputs), in the units of the log. float64 in C order isn't copied. With `inputs`,
             columns of a data frame are selected by name.
         y : (n,) or, for DynamicsModel, (n, targets), in the units of the log. May be omitted where
-            X is a data frame of a whole log: missing inputs, targets and time are guessed from the
-            column names as in `kelpie learn`, and rows with a missing number are skipped.
+            X is a data frame of a whole log: missing inputs, targets and time are guessed as in
+            `kelpie learn`, with a warning of columns left out for their values (constants, counters
+            of rows, copies of another), and rows with a missing number are skipped.
         t : (n,), time [s] or time stamps, never decreasing; or the name of a column of X. Default:
             the index of a data frame where it tells the time, else `rate` rows per second, from 0
             on. Where neither is known, a whole log is refused, a data frame X is learned with a
@@ -66,7 +67,7 @@ class Learner(Parameters):
         rows; earlier rows stay learned. On the log of AUV Dagon a row takes 0.2 ms per
         target in the mean (docs/howto/python.md).
         """
-        given = self._given(X, y, t, unknown, (self.inputs, self.targets))
+        given = self._given(X, y, t, unknown, (self.inputs, self.targets), by_values=True)
         rows, targets = self._checked(given.X, given.y)
         model = self._start(given, rows, targets, most_warmup=max(2, rows.shape[0]))
         self._warn_of_mistakes(model, given, rows, targets)
@@ -78,7 +79,8 @@ class Learner(Parameters):
                     t: Union[ArrayLike, str, None] = None, **unknown: Any) -> Self:
         """Continues learning with further rows; the first call starts a model.
 
-        Parameters and errors as in fit(). The size of blocks changes nothing, to the last bit.
+        Parameters and errors as in fit(), but of a whole log names alone tell the inputs. The size
+        of blocks changes nothing, to the last bit.
         `decisions_` has the outcome of each row. After load(), learning continues from the loaded
         model: first predictions are equal; intervals, disturbance, past models and totals start
         anew (a pickle keeps them).
@@ -94,7 +96,7 @@ class Learner(Parameters):
         seen = self._as_seen(given.X) if given.by_name else given.X
         rows, targets = self._checked(seen, given.y)
         _arrays.require_same_columns(self, seen, rows)
-        self._tell_alignment()
+        self._tell_alignment(stacklevel=3)
         if isinstance(self._model, _kelpie.TrainedModel):
             start = self._clock.times(given.t, len(rows), 0, self.rate)[0]
             if isinstance(self._model, _kelpie.SavedModel):
@@ -329,10 +331,10 @@ class Learner(Parameters):
         """The alignment under the keys of model.json; empty without."""
         return json.loads(self._trained().json()).get("alignment") or {}
 
-    def _tell_alignment(self) -> None:
+    def _tell_alignment(self, stacklevel: int) -> None:
         texts, self._untold = list(self._untold.values()), {}
         for text in texts:
-            warnings.warn(text, UserWarning, stacklevel=4)
+            warnings.warn(text, UserWarning, stacklevel=stacklevel)
 
     def _adopt(self, model: Union[_kelpie.LiveModel, _kelpie.TrainedModel], flat: bool) -> None:
         self._model = model
@@ -343,14 +345,14 @@ class Learner(Parameters):
         self.n_features_in_ = len(model.inputs)
 
     def _given(self, X: Any, y: Any, t: Any, unknown: dict[str, Any],
-               names: tuple[Any, Any]) -> _frames.Given:
+               names: tuple[Any, Any], by_values: bool = False) -> _frames.Given:
         weights = unknown.pop("sample_weight", None)
         if unknown:
             raise TypeError(f"fit() and partial_fit() take X, y and t, no {', '.join(unknown)}")
         if weights is not None:
             raise ValueError("sample_weight: rows of a stream have no weights; their age and place "
                              "decide what counts. Leave rows out instead (score() takes weights)")
-        given = _frames.taken(X, y, t, *names)
+        given = _frames.taken(X, y, t, *names, by_values)
         if given.t is None and self.rate is None and _frames.is_frame(X):
             if y is None:
                 require_rate(None, "this log")
@@ -431,7 +433,7 @@ class Learner(Parameters):
         X = X if chosen is None else self._as_seen(chosen)
         rows = _arrays.matrix(X)
         _arrays.require_same_columns(self, X, rows)
-        self._tell_alignment()
+        self._tell_alignment(stacklevel=4)
         return rows
 
     def _shaped(self, values: NDArray[Any]) -> NDArray[Any]:

@@ -20,11 +20,21 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-py::tuple guessed_roles(const Names& columns, const Names& inputs, const Names& targets) {
+// `values` (rows, columns) of the first columns; without rows, names alone tell.
+py::tuple guessed_roles(const Names& columns, const Names& inputs, const Names& targets,
+                        const Array& values) {
   log::Table table;
   table.source = "columns";
   table.names = columns;
   table.columns.resize(columns.size());
+  const auto width = static_cast<std::size_t>(values.shape(1));
+  require(width <= columns.size(), "columns", "two have one name");
+  const Rows rows(values, width, "values");
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t k = 0; k < width; ++k) {
+      table.columns[k].push_back(rows[row][k]);
+    }
+  }
   const log::Roles roles = log::guess_roles(table, {.inputs = inputs, .targets = targets});
   return py::make_tuple(roles.inputs, roles.targets, roles.time);
 }
@@ -128,8 +138,11 @@ py::dict read_log(const std::string& file, const std::string& config, const Name
 }  // namespace
 
 void bind_log(py::module_& module) {
-  module.def("guess_roles", &guessed_roles, py::arg("columns"), py::arg("inputs"),
-             py::arg("targets"), "Names of inputs and targets, and of the time or \"\".");
+  module.def(
+      "guess_roles", &guessed_roles, py::arg("columns"), py::arg("inputs"), py::arg("targets"),
+      py::arg("values").noconvert(),
+      "Names of inputs and targets, and of the time or \"\"; by values, too, where there are "
+      "rows of the first columns.");
   module.def(
       "differentiated",
       [](const std::string& name) {

@@ -43,6 +43,19 @@ def test_a_whole_log_is_learned_as_it_is(log, table, model):
         kelpie.DynamicsModel(**PLAIN).fit(table[["t", *INPUTS]])
 
 
+def test_columns_that_tell_nothing_are_left_out_of_a_whole_log(log, table, model, tmp_path):
+    idle = table.assign(n3=7.0, number=np.arange(len(table)), n1_again=table["n1"])[:400]
+    idle.to_csv(tmp_path / "log.csv", index=False)
+    with pytest.warns(UserWarning, match="X: n3, number, n1_again: left out, as `kelpie learn`"):
+        whole = kelpie.DynamicsModel(**PLAIN).fit(idle)
+    assert whole.inputs_ == kelpie.read_log(tmp_path / "log.csv").attrs["inputs"] == INPUTS
+    assert np.array_equal(whole.predict(log_frame(log)), model.predict(log.X))
+    every = [*INPUTS, "n3", "number", "n1_again"]
+    # A block tells nothing of the blocks to come.
+    assert kelpie.DynamicsModel(**PLAIN).partial_fit(idle).inputs_ == every
+    assert kelpie.DynamicsModel(**PLAIN, inputs=every).fit(idle).inputs_ == every
+
+
 def log_frame(log):
     return pandas.DataFrame(log.X, columns=INPUTS)
 
