@@ -18,6 +18,7 @@ from ._parameters import ParameterAccess
 
 _AT_ONCE = {"neutral": 0.0, "dead_band": 0.0, "astern": 1.0, "lag_s": 0.0, "rate": 0.0,
             "delay_s": 0.0}
+_SECONDS = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 MOST_S = 10.0  # no shift is larger, as in the library
 
 
@@ -47,7 +48,7 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
     ----------
     shift_s_ : the lag [s]; 0 without clear evidence.
     rows_ : the lag in rows.
-    rate_ : rows per second [Hz].
+    rate_ : rows per second [Hz]; of() knows it where it was given or the model has a shift.
     commands_ : names of the aligned columns.
     actuators_ : a dict for each of these, with all keys of `actuators`; [] where all act at once.
     gain_ : share of the variance unexplained without alignment that the alignment explains.
@@ -106,7 +107,8 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         """The shift and the actuators of a loaded model; needs no fit().
 
         Of a data frame transform() takes the model's inputs by name, and the times of a column t,
-        time or stamp, unless they are given. `rate` [Hz] may be left out where there are times.
+        time or stamp (in the unit that read_log() found), unless they are given.
+        `rate` [Hz] may be left out where there are times.
         A current stays in the velocities.
 
         Raises NotFittedError, or ValueError on a wrong rate.
@@ -115,12 +117,14 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
         alignment = cls(shift=found.get("shift_s", 0.0), actuators=found.get("actuators", []),
                         rate=rate)
         alignment._of_model = True
-        alignment.shift_s_, alignment.rows_ = alignment.shift, found.get("rows", 0)
-        alignment.commands_, alignment.actuators_ = found.get("commands", []), alignment.actuators
+        alignment.shift_s_, alignment.rows_ = found.get("shift_s", 0.0), found.get("rows", 0)
+        alignment.commands_ = found.get("commands", [])
+        alignment.actuators_ = found.get("actuators", [])
         alignment.gain_, alignment.why_ = 0.0, "as the model has it"
         if rate is None and alignment.rows_:
             rate = alignment.rows_ / alignment.shift_s_
-        alignment.rate_ = None if rate is None else checked_rate(rate)
+        if rate is not None:
+            alignment.rate_ = checked_rate(rate)
         names = model.inputs_
         alignment._places = [names.index(name) for name in alignment.commands_]
         alignment.n_features_in_ = len(names)
@@ -148,12 +152,13 @@ class Alignment(TransformerMixin, ParameterAccess, BaseEstimator):
             _frames.require_inputs(X, names)
             usual = [name for name in TIMES if name in X.columns and name not in names]
             if t is None and index_times(X) is None and usual:
-                t = X[usual[0]]
+                unit = getattr(X, "attrs", {}).get("units", {}).get(usual[0])
+                t = X[usual[0]] * _SECONDS[unit] if unit in _SECONDS else X[usual[0]]
             X = X[names] if set(names) <= set(X.columns) else X
         rows = _arrays.matrix(X)
         _arrays.require_width(self, rows)
         t = index_times(X) if t is None else t
-        rate = self.rate_
+        rate: Optional[float] = getattr(self, "rate_", None)
         if t is None:
             rate = require_rate(rate, "X")
         times = Clock().times(t, len(rows), 0, rate)

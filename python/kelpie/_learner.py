@@ -329,7 +329,8 @@ class Learner(Parameters):
 
     def _alignment(self) -> dict[str, Any]:
         """The alignment under the keys of model.json; empty without."""
-        return json.loads(self._trained().json()).get("alignment") or {}
+        found: dict[str, Any] = json.loads(self._trained().json()).get("alignment") or {}
+        return found
 
     def _tell_alignment(self, stacklevel: int) -> None:
         texts, self._untold = list(self._untold.values()), {}

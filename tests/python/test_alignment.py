@@ -280,6 +280,10 @@ def test_the_alignment_of_a_loaded_model(learned, tmp_path, found):
     assert alignment.commands_ == ["n1", "n2"] and alignment.shift_s_ == found["shift_s"]
     np.testing.assert_allclose(alignment.transform(log), right, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(alignment.transform(X, t), right, rtol=1e-9, atol=1e-9)
+    log.rename(columns={"t": "t [ms]"}).assign(**{"t [ms]": 1000.0 * t}).to_csv(
+        tmp_path / "log.csv", index=False)
+    np.testing.assert_allclose(alignment.transform(kelpie.read_log(tmp_path / "log.csv")), right,
+                               rtol=1e-6, atol=1e-6)
     np.testing.assert_array_equal(kelpie.Alignment.of(loaded, rate=10.0).transform(X), right)
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(alignment)).transform(log),
                                   alignment.transform(log))
