@@ -64,8 +64,8 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
         velocities and the commands that are known by name.
     rate : beside `pose`, rows per second. Default: as poses come, at most 10.
     draft : of a CSV file without the usual names or accelerations, the rows that `kelpie learn`
-        guesses: inputs in SI units, and slopes of velocities as targets, at one rate. Recordings are
-        read so by default.
+        guesses: inputs in SI units, and slopes of velocities as targets, at one rate. Recordings
+        are read so by default.
     frame : True for a pandas data frame, False for a dict of arrays (LogArrays). Default: a data
         frame where pandas is installed.
 
