@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMostStates = 6;  // of a DeadReckoning
 constexpr std::string_view kNoPose = "no pose is measured";
+constexpr std::string_view kLost = "an input is silent and no velocity is measured";
 
 std::vector<std::size_t> late_inputs_of(const StreamPlan& plan) {
   std::vector<std::size_t> late;
@@ -32,6 +34,34 @@ std::vector<std::size_t> late_inputs_of(const StreamPlan& plan) {
     }
   }
   return late;
+}
+
+// The error of a model that doesn't know its commands: as much as those change an acceleration
+// within the range that was seen. Rudders act at speed.
+OpenLoop without_commands(OpenLoop loop) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < loop.seen.size(); ++i) {
+    const auto& [low, high] = loop.seen[i];
+    const bool is_state = std::ranges::find(loop.states, i) != loop.states.end();
+    x.push_back(is_state ? high : std::midpoint(low, high));
+  }
+  std::vector<double> least(loop.states.size());
+  std::vector<double> most(loop.states.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::ranges::find(loop.states, i) != loop.states.end()) {
+      continue;
+    }
+    const double usual = x[i];
+    x[i] = loop.seen[i].low;
+    loop.accelerations(x, least);
+    x[i] = loop.seen[i].high;
+    loop.accelerations(x, most);
+    x[i] = usual;
+    for (std::size_t k = 0; k < most.size(); ++k) {
+      loop.error[k] = std::hypot(loop.error[k], (most[k] - least[k]) / 2.0);
+    }
+  }
+  return loop;
 }
 
 std::string_view fault_text(VelocityFault fault) {
@@ -100,7 +130,7 @@ void LiveReckoning::use(std::shared_ptr<const ReckoningModel> model) {
   }
   model_ = std::move(model);
   if (reckoning_) {
-    reckoning_->use(model_->loop);
+    reckoning_->use(holds_ ? without_commands(model_->loop) : model_->loop);
   } else {
     settings_ = named_settings(model_->loop);
     settings_.between = acts_at_once() ? CommandPath::held : CommandPath::linear;
@@ -130,6 +160,8 @@ void LiveReckoning::begin_anew(const Receiver& receiver) {
   t_ = -std::numeric_limits<double>::infinity();
   asked_s_ = t_;
   waits_ = false;
+  holds_ = false;
+  is_lost_ = false;
 }
 
 bool LiveReckoning::take_velocities(const Receiver& receiver) {
@@ -158,22 +190,30 @@ std::optional<ReckonedSample> LiveReckoning::update(const Receiver& receiver,
     return update_present(receiver, received_ns, output);
   }
   commands_.use(model_->alignment);
-  const bool has_commands = receiver.inputs_at(receiver.now_s(), commands_.shifts_s(), x_, states_);
+  const std::span<const double> shifts_s = commands_.shifts_s();
+  const bool has_commands = receiver.inputs_at(receiver.now_s(), shifts_s, x_, states_);
+  const bool is_known =
+      has_commands || receiver.held_inputs_at(receiver.now_s(), shifts_s, x_, states_);
   const bool is_new = take_velocities(receiver);
   const double now_s = std::max(receiver.now_s(), t_);
-  if (!has_commands || (!is_new && now_s < t_ + kTuning.least_step_s)) {
+  if (!is_known || (!is_new && now_s < t_ + kTuning.least_step_s)) {
     return std::nullopt;
   }
   commands_.act(x_, now_s);
   t_ = now_s;
+  follow_commands(has_commands);
   reckoning_->update(x_, t_);
   if (!reckoning_->started()) {
     return std::nullopt;
   }
-  if (is_new) {
+  if (is_new && has_commands) {
     note_faults();
   }
+  note_loss(output);
   note_outage(output);
+  if (is_lost_) {
+    return std::nullopt;
+  }
   return ReckonedSample{.stamp_ns = received_ns,
                         .data_ns = *receiver.origin_ns() + nanoseconds(t_),
                         .names = names_,
@@ -186,12 +226,35 @@ double LiveReckoning::usual_silence_s() const {
   return late_.empty() ? 0.0 : plan.pose->half_s + plan.gap_s + plan.wait_s;
 }
 
+// After a long silence it begins anew: what was practised meanwhile is of the other model.
+void LiveReckoning::follow_commands(bool has_commands) {
+  if (holds_ == !has_commands) {
+    return;
+  }
+  holds_ = !has_commands;
+  if (holds_) {
+    held_from_s_ = t_;
+  } else if (t_ > held_from_s_ + kTuning.longest_hold_s) {
+    *reckoning_ = DeadReckoning(model_->loop, settings_);
+    present_.reset();
+    based_s_ = -std::numeric_limits<double>::infinity();
+    return;
+  }
+  const OpenLoop loop = holds_ ? without_commands(model_->loop) : model_->loop;
+  reckoning_->use(loop);
+  if (present_) {
+    present_->use(loop);
+  }
+}
+
 void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
   if (late_.empty() || !reckoning_) {
     return;
   }
   commands_.use(model_->alignment);
-  if (!receiver.inputs_at(row.t, commands_.shifts_s(), x_, late_)) {
+  const std::span<const double> shifts_s = commands_.shifts_s();
+  if (!receiver.inputs_at(row.t, shifts_s, x_, late_) &&
+      !receiver.held_inputs_at(row.t, shifts_s, x_, late_)) {
     return;
   }
   const bool is_stuck = configuration_.live.frozen == Frozen::skip && receiver.is_stuck(row.t);
@@ -216,7 +279,9 @@ void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
 
 // By the model and the commands alone.
 void LiveReckoning::advance(const Receiver& receiver, double t) {
-  if (receiver.inputs_at(t, present_commands_.shifts_s(), x_, late_)) {
+  const std::span<const double> shifts_s = present_commands_.shifts_s();
+  if (receiver.inputs_at(t, shifts_s, x_, late_) ||
+      receiver.held_inputs_at(t, shifts_s, x_, late_)) {
     present_commands_.act(x_, t);
     present_->update(x_, t);
   }
@@ -230,8 +295,16 @@ std::optional<ReckonedSample> LiveReckoning::update_present(const Receiver& rece
     return std::nullopt;
   }
   t_ = now_s;
+  follow_commands(receiver.inputs_at(t_, present_commands_.shifts_s(), x_, late_));
+  if (!present_) {
+    return std::nullopt;
+  }
   advance(receiver, t_);
+  note_loss(output);
   note_outage(output);
+  if (is_lost_) {
+    return std::nullopt;
+  }
   return ReckonedSample{.stamp_ns = received_ns,
                         .data_ns = *receiver.origin_ns() + nanoseconds(t_),
                         .names = names_,
@@ -278,25 +351,35 @@ void LiveReckoning::note_faults() {
   }
 }
 
+void LiveReckoning::note_loss(Output& output) {
+  const bool is_lost = holds_ && present()->silent_s() > usual_silence_s() + kTuning.least_outage_s;
+  if (std::exchange(is_lost_, is_lost) != is_lost) {
+    output.event(is_lost ? fmt::format("at {:.1f} s: {}; velocities are unknown", t_, kLost)
+                         : fmt::format("at {:.1f} s: velocities are known again", t_));
+  }
+}
+
+// Of the velocity log alone: one that began beside silent commands counts from their return on.
 void LiveReckoning::note_outage(Output& output) {
   const bool is_faulty = fault_ == VelocityFault::zero || fault_ == VelocityFault::frozen;
   const double silent_s = present()->silent_s();
   const double usual_s = usual_silence_s();
+  const double lasted_s = t_ - silent_s - measured_s_;
   if (silent_s <= usual_s && is_out_) {
     is_out_ = false;
     ++health_.outages;
-    health_.longest_s = std::max(health_.longest_s, silent_s_);
+    health_.longest_s = std::max(health_.longest_s, lasted_s);
     output.event(fmt::format(
         "at {:.1f} s: velocities are measured again, after {:.1f} s; step {:.1f} standard "
         "deviations",
-        t_, silent_s_, reckoning_->step()));
-  } else if (!is_out_ &&
+        t_, lasted_s, reckoning_->step()));
+  } else if (!is_out_ && !holds_ &&
              (silent_s > usual_s + kTuning.least_outage_s || (is_faulty && silent_s > 0.0))) {
     is_out_ = true;
     output.event(fmt::format("at {:.1f} s: {}; velocities are reckoned", t_,
                              late_.empty() ? fault_text(fault_) : kNoPose));
   }
-  silent_s_ = silent_s;
+  measured_s_ = t_ - silent_s;
 }
 
 bool LiveReckoning::is_invalid(double t) const {
@@ -311,13 +394,13 @@ ReckoningHealth LiveReckoning::health() const {
   ReckoningHealth health = health_;
   if (const DeadReckoning* const reckoning = present();
       reckoning != nullptr && reckoning->started()) {
-    for (std::size_t i = 0; i < health.velocities.size(); ++i) {
+    for (std::size_t i = 0; !is_lost_ && i < health.velocities.size(); ++i) {
       health.velocities[i].value = reckoning->velocity(i);
       health.velocities[i].deviation = reckoning->deviation(i);
     }
     health.silent_s = reckoning->silent_s();
     const std::string_view fault = late_.empty() ? fault_text(fault_) : kNoPose;
-    health.fault = is_out_ ? std::string(fault) : "";
+    health.fault = is_lost_ ? kLost : is_out_ ? fault : "";
   } else {
     health.velocities.clear();
   }

@@ -33,7 +33,9 @@ std::shared_ptr<const ReckoningModel> reckoning_model(const DynamicsModel& model
 /// Velocities at every message, through outages of the velocity log: a DeadReckoning between the
 /// receiver and the learner (docs/method/open_loop.md#live). Velocities from poses are known half a
 /// window late: a DeadReckoning takes the rows, and a copy goes on from the newest row to the
-/// newest message. Models come from the learner as of certain rows and serve a fixed time later, so
+/// newest message. Where commands fall silent the last ones are held, with the error of a model
+/// that knows no commands: measurements alone tell the velocities then, and without any there is no
+/// estimate. Models come from the learner as of certain rows and serve a fixed time later, so
 /// that a replay gives the numbers of the live run. For the receiving thread.
 class LiveReckoning {
  public:
@@ -74,6 +76,8 @@ class LiveReckoning {
                                                Output& output);
   void advance(const Receiver& receiver, double t);
   double usual_silence_s() const;
+  void follow_commands(bool has_commands);
+  void note_loss(Output& output);
   const DeadReckoning* present() const { return late_.empty() ? reckoning_.get() : present_.get(); }
   void begin_anew(const Receiver& receiver);
   void note_faults();
@@ -101,8 +105,11 @@ class LiveReckoning {
   VelocityFault fault_ = VelocityFault::none;  // of the velocity log
   double invalid_from_s_ = std::numeric_limits<double>::infinity();
   double invalid_until_s_ = -std::numeric_limits<double>::infinity();
-  bool is_out_ = false;  // an outage was reported
-  double silent_s_ = 0.0;
+  bool is_out_ = false;     // an outage was reported
+  double measured_s_ = t_;  // the last measurement
+  bool holds_ = false;      // an input is silent
+  double held_from_s_ = 0.0;
+  bool is_lost_ = false;  // an input is silent and no velocity is measured
   ReckoningHealth health_;
 };
 

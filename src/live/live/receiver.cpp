@@ -48,6 +48,19 @@ std::vector<std::size_t> velocities_of(const StreamPlan& plan) {
   return velocities;
 }
 
+// What is newer than the newest is held; with `holds` also what lies in a silence.
+double value_at(const SignalHistory& signal, double t, Interpolation between, bool holds) {
+  if (signal.size() == 0) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double value = signal.at(std::min(t, signal.newest_s()), between);
+  if (!holds || std::isfinite(value)) {
+    return value;
+  }
+  const std::size_t after = signal.first_after(t);
+  return signal.value(after > 0 ? after - 1 : 0);
+}
+
 }  // namespace
 
 Receiver::Receiver(const Configuration& configuration, std::optional<std::int64_t> origin_ns)
@@ -254,20 +267,19 @@ const SignalHistory* Receiver::input_signal(std::size_t input) const {
   return inputs_[input].source ? &stream_.signal(*inputs_[input].source) : nullptr;
 }
 
-double Receiver::angle_at(double t, std::size_t angle) const {
+double Receiver::angle_at(double t, std::size_t angle, bool holds) const {
   std::array<double, 4> quaternion{};
   for (std::size_t part = 0; part < quaternion.size(); ++part) {
-    const SignalHistory& signal = stream_.signal(quaternion_[part]);
-    quaternion[part] = signal.at(std::min(t, signal.newest_s()), Interpolation::hold);
+    quaternion[part] = value_at(stream_.signal(quaternion_[part]), t, Interpolation::hold, holds);
   }
   return roll_pitch_yaw(quaternion)[angle];
 }
 
-bool Receiver::inputs_at(double t, std::span<const double> shift_s, std::span<double> x,
-                         std::span<const std::size_t> silent) const {
+bool Receiver::read_inputs(double t, std::span<const double> shift_s, std::span<double> x,
+                           std::span<const std::size_t> silent, bool holds) const {
   const StreamPlan& plan = stream_.plan();
   const auto is_silent = [&](std::size_t source) {
-    return !(now_s_ - stream_.signal(source).newest_s() <= plan.gap_s);
+    return !holds && !(now_s_ - stream_.signal(source).newest_s() <= plan.gap_s);
   };
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::ranges::find(silent, i) != silent.end()) {
@@ -276,11 +288,10 @@ bool Receiver::inputs_at(double t, std::span<const double> shift_s, std::span<do
     }
     const auto& [source, angle] = inputs_[i];
     if (angle && !std::ranges::any_of(quaternion_, is_silent)) {
-      x[i] = angle_at(t, *angle);
+      x[i] = angle_at(t, *angle, holds);
     } else if (!angle && source && !is_silent(*source)) {
-      const SignalHistory& signal = stream_.signal(*source);
-      // What is newer than the newest is held.
-      x[i] = signal.at(std::min(t + shift_s[i], signal.newest_s()), plan.sources[*source].between);
+      x[i] =
+          value_at(stream_.signal(*source), t + shift_s[i], plan.sources[*source].between, holds);
     } else {
       return false;
     }

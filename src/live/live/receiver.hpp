@@ -45,7 +45,14 @@ class Receiver {
   /// as far as known. False where an input is silent, derived or a velocity from poses; inputs at
   /// the places `silent` may be, and are NaN.
   bool inputs_at(double t, std::span<const double> shift_s, std::span<double> x,
-                 std::span<const std::size_t> silent = {}) const;
+                 std::span<const std::size_t> silent = {}) const {
+    return read_inputs(t, shift_s, x, silent, false);
+  }
+  /// The same, where silent inputs hold their last values. False where an input has none yet.
+  bool held_inputs_at(double t, std::span<const double> shift_s, std::span<double> x,
+                      std::span<const std::size_t> silent) const {
+    return read_inputs(t, shift_s, x, silent, true);
+  }
   /// The signal of an input; null of a derived input.
   const SignalHistory* input_signal(std::size_t input) const;
   double now_s() const { return now_s_; }  ///< the newest stamp, since the origin
@@ -81,7 +88,9 @@ class Receiver {
 
   void bind(const bag::Topic& topic);
   InputPlace place_of(const std::string& input) const;
-  double angle_at(double t, std::size_t angle) const;
+  bool read_inputs(double t, std::span<const double> shift_s, std::span<double> x,
+                   std::span<const std::size_t> silent, bool holds) const;
+  double angle_at(double t, std::size_t angle, bool holds) const;
   bool is_valid(std::size_t topic) const;
   bool mirror(std::size_t source, TopicHealth& health, double& value);
   void add(const Held& sample);

@@ -44,6 +44,7 @@ inline constexpr struct Tuning {
   double least_step_s = 0.02;    ///< between two estimates without a measurement
   double between_poses_s = 0.1;  ///< between two rows of a pose from which the present is reckoned
   double least_outage_s = 1.0;   ///< s of silence; shorter silences are usual
+  double longest_hold_s = 10.0;  ///< of silent commands, until practice is of another model
 
   // Parameters (docs/howto/live.md#parameters)
   double identified_s = 1800.0;            ///< of rows that are identified: 3600 windows
