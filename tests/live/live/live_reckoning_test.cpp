@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -264,6 +265,51 @@ TEST_F(Reckoning, WildVelocitiesMoveLittle) {
   EXPECT_FALSE(std::isnan(first_fault_s(VelocityFault::implausible)));
 }
 
+// The velocity log goes on, and is to blame for nothing.
+TEST_F(Reckoning, WithoutCommandsTheEstimateFollowsTheVelocityLog) {
+  std::vector<Recorded> messages = mission_;
+  std::erase_if(messages, [](const Recorded& m) { return m.topic == 1 && is_between(m, 80, 100); });
+  const live::Health health = run(messages);
+  EXPECT_LT(largest_error(80, 120), 0.2);
+  const std::vector<Estimate> live = estimates_;
+  const auto silent = std::ranges::count_if(live, [](const Estimate& one) {
+    return 82.0 < one.t_s() && one.t_s() < 99.0 && one.silent_s < 0.2;
+  });
+  EXPECT_GT(silent, 300);
+  EXPECT_EQ(health.reckoning.outages, 0U);
+  EXPECT_EQ(health.reckoning.fault, "");
+  EXPECT_EQ(said_.find("measures nothing"), std::string::npos) << said_;
+  EXPECT_EQ(said_.find("measured again"), std::string::npos) << said_;
+  run(messages, true);
+  EXPECT_TRUE(estimates_ == live);
+}
+
+TEST_F(Reckoning, WithNeitherCommandsNorVelocitiesThereIsNoEstimate) {
+  std::vector<Recorded> messages = mission_;
+  std::erase_if(messages, [](const Recorded& m) { return m.topic == 1 && is_between(m, 80, 100); });
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && is_between(message, 85, 95)) {
+      set_velocity(message, std::nan(""));
+    }
+  }
+  live::Health health = run(messages);
+  EXPECT_TRUE(std::ranges::none_of(
+      estimates_, [](const Estimate& one) { return 86.5 < one.t_s() && one.t_s() < 94.9; }));
+  EXPECT_LT(largest_error(95.5, 120), 0.2);
+  EXPECT_EQ(health.reckoning.outages, 0U);
+  EXPECT_NE(said_.find("s: an input is silent and no velocity is measured; velocities are unknown"),
+            std::string::npos)
+      << said_;
+  EXPECT_NE(said_.find("velocities are known again"), std::string::npos) << said_;
+  std::erase_if(messages, [](const Recorded& m) { return is_between(m, 94, 1000); });
+  health = run(messages);
+  ASSERT_EQ(health.reckoning.velocities.size(), 1U);
+  EXPECT_TRUE(std::isnan(health.reckoning.velocities[0].value));
+  EXPECT_TRUE(std::isnan(health.reckoning.velocities[0].deviation));
+  EXPECT_NEAR(health.reckoning.silent_s, 9.0, 0.3);
+  EXPECT_EQ(health.reckoning.fault, "an input is silent and no velocity is measured");
+}
+
 // Poses in place of velocities: the present is reckoned from a row that is half a window old.
 class ReckoningFromPoses : public Reckoning {
  protected:
@@ -314,6 +360,23 @@ TEST_F(ReckoningFromPoses, ASilenceOfPosesIsAnOutage) {
   EXPECT_NE(said_.find("no pose is measured; velocities are reckoned"), std::string::npos) << said_;
   EXPECT_EQ(health.reckoning.outages, 1U);
   EXPECT_LT(error(120.0, 140.0), 0.15);
+}
+
+TEST_F(ReckoningFromPoses, WithoutCommandsTheEstimateFollowsThePoses) {
+  std::vector<Recorded> messages = testing::pose_mission(log_, kBegin, 0.01);
+  std::erase_if(messages,
+                [](const Recorded& m) { return m.topic == 1 && is_between(m, 120, 140); });
+  const live::Health health = run_as(testing::pose_config("window = 2.4", "align = \"none\""),
+                                     testing::pose_topics(), messages, false);
+  std::set<double> values;
+  for (const Estimate& one : estimates_) {
+    if (122.0 < one.t_s() && one.t_s() < 139.0) {
+      values.insert(one.u);
+    }
+  }
+  EXPECT_GT(values.size(), 100U);
+  EXPECT_EQ(health.reckoning.outages, 0U);
+  EXPECT_EQ(said_.find("no pose is measured"), std::string::npos) << said_;
 }
 
 }  // namespace
