@@ -59,6 +59,7 @@ void Recorder::open() {
   bytes_ = 0;
   topics_ = 0;
   is_new_ = true;
+  has_chunks_ = false;
 }
 
 bool Recorder::reopen() {
@@ -71,11 +72,12 @@ bool Recorder::reopen() {
 }
 
 void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& message) {
-  const bool is_time = std::chrono::steady_clock::now() - written_ > kTuning.between_recordings;
+  bool is_time = std::chrono::steady_clock::now() - written_ > kTuning.between_recordings;
   if (!file_ && !(is_time && reopen())) {
     ++lost_;
     return;
   }
+  is_time = is_time && !is_new_;  // the disk may have room for one message and for no chunk
   for (; topics_ < topics.size(); ++topics_) {
     bag::Topic topic = topics[topics_];
     try {
@@ -85,7 +87,12 @@ void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& 
     }
     writer_->add_topic(topic);
   }
-  if (std::exchange(is_new_, false) && parameters_ != nullptr) {
+  const bool is_new = std::exchange(is_new_, false);
+  if (is_new && !append(writer_->take())) {  // the head: nothing recorded so far
+    ++lost_;
+    return;
+  }
+  if (is_new && parameters_ != nullptr) {
     parameters_->visit(message, [&](const bag::Message& known) { writer_->write(known); });
   }
   writer_->write(message);
@@ -93,16 +100,16 @@ void Recorder::write(const std::vector<bag::Topic>& topics, const bag::Message& 
   if (is_time) {
     written_ = std::chrono::steady_clock::now();
   }
-  append(writer_->take(is_time));
+  note_written(writer_->take(is_time));
 }
 
 void Recorder::finish() {
   if (file_) {
-    append(writer_->finish());
+    note_written(writer_->finish());
   }
 }
 
-void Recorder::append(const std::string& bytes) {
+bool Recorder::append(const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t count = ::write(file_->number(), bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) {
@@ -111,20 +118,25 @@ void Recorder::append(const std::string& bytes) {
     if (count <= 0) {
       error_ = folder_.string() + ": " + std::generic_category().message(errno);
       give_up();
-      return;
+      return false;
     }
     done += static_cast<std::size_t>(count);
   }
   bytes_ += bytes.size();
-  if (!bytes.empty()) {
+  return true;
+}
+
+void Recorder::note_written(const std::string& bytes) {
+  if (!bytes.empty() && append(bytes)) {
     error_.clear();
     waiting_ = 0;
+    has_chunks_ = true;
   }
 }
 
 // The file keeps its whole chunks. A file without any has nothing for a reader.
 void Recorder::give_up() {
-  if (bytes_ == 0) {
+  if (!has_chunks_) {
     ::unlink(path_.c_str());
   } else if (::ftruncate(file_->number(), static_cast<off_t>(bytes_)) != 0) {
     error_ += ", and its last file has an incomplete end";

@@ -34,7 +34,7 @@ class ParameterMessages {
 /// Records messages to an MCAP file. A killed program loses at most the last
 /// Tuning::between_recordings, a power cut also what the system has not yet written; the file then
 /// has no end, and `--recover` reads the file. Where the disk takes no more, messages are counted
-/// as lost, until a new file can be written. For one thread.
+/// as lost, until a chunk of a new file is written. For one thread.
 class Recorder {
  public:
   /// Creates live_0001.mcap, live_0002.mcap, … in `folder`, and the folder where missing. Throws
@@ -53,17 +53,19 @@ class Recorder {
  private:
   void open();
   bool reopen();
-  void append(const std::string& bytes);
+  bool append(const std::string& bytes);
+  void note_written(const std::string& bytes);
   void give_up();
 
   std::filesystem::path folder_;
   bag::MessageDefinitions definitions_;
   std::filesystem::path path_;
   std::optional<file::Descriptor> file_;  // none: the disk took no more
-  std::size_t bytes_ = 0;                 // in the file
+  std::size_t bytes_ = 0;                 // of whole chunks in the file, and its head
   std::optional<bag::McapWriter> writer_;
   const ParameterMessages* parameters_ = nullptr;
   bool is_new_ = true;       // nothing was written to the file
+  bool has_chunks_ = false;  // in the file
   std::size_t topics_ = 0;   // added to the file
   std::size_t waiting_ = 0;  // messages in writer_
   std::size_t lost_ = 0;

@@ -165,6 +165,29 @@ TEST(Recorder, AFullDiskIsCountedAndWithRoomAgainItGoesOnInAnotherFile) {
   EXPECT_GE(recorder.lost(), lost);
 }
 
+// A disk that takes the head of a file, and even a message, and no chunk of a recording.
+TEST(Recorder, AFullDiskWithALittleRoomRecordsNothingAndKeepsNoEmptyFiles) {
+  const TemporaryFolder folder;
+  live::Recorder recorder(folder / "rec", {});
+  bag::Message message = testing::message_of(little_mission(1.0).front());
+  RandomStream random(3, "disk");
+  std::vector<std::byte> noise(30'000);
+  std::ranges::generate(noise, [&] { return static_cast<std::byte>(random.uniform(0.0, 255.9)); });
+  message.data = noise;
+  const FullDisk full(100'000);
+  const auto end = std::chrono::steady_clock::now() + 3 * live::kTuning.between_recordings / 2;
+  std::size_t written = 0;
+  for (; std::chrono::steady_clock::now() < end; ++written) {
+    recorder.write(testing::mission_topics(), message);
+    if (recorder.lost() > 0) {
+      ASSERT_NE(recorder.error(), "") << "after " << written << " messages";
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_GE(recorder.lost() + 40U, written);
+  EXPECT_LE(std::distance(std::filesystem::directory_iterator(folder / "rec"), {}), 1);
+}
+
 TEST(Recorder, AFolderWithoutPermissionIsAFailureThatNamesTheFile) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "rec");
