@@ -288,12 +288,16 @@ std::optional<live::SavedRun> saved_run(const LiveArguments& options,
   if (options.fresh || options.demo) {
     return std::nullopt;
   }
-  std::optional<live::SavedRun> saved =
-      live::find_checkpoint(configuration.live.out, configuration);
-  if (saved && !saved->note.empty()) {
-    warn("kelpie: {}; resuming from {}\n", saved->note, saved->file);
+  try {
+    std::optional<live::SavedRun> saved =
+        live::find_checkpoint(configuration.live.out, configuration);
+    if (saved && !saved->note.empty()) {
+      warn("kelpie: {}; resuming from {}\n", saved->note, saved->file);
+    }
+    return saved;
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) + "; --fresh begins anew, or give another --out");
   }
-  return saved;
 }
 
 void say_plan(const live::Configuration& configuration,

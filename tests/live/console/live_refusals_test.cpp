@@ -84,8 +84,10 @@ TEST_F(LiveCommand, ACheckpointOfAnotherConfigurationIsRefused) {
   write_mission(60.0);
   ASSERT_EQ(live("--speed max --out out").exit_code, 0);
   write("x.toml", mission_config("gap = 2"));
-  expect_refused("--config x.toml --from mission.mcap --out out",
-                 "out/checkpoint.kelpie: log.gap: is '1' there, '2' in this run");
+  expect_refused(
+      "--config x.toml --from mission.mcap --out out",
+      "out/checkpoint.kelpie: log.gap: is '1' there, '2' in this run; a run goes on only "
+      "as it began; --fresh begins anew, or give another --out");
   write("x.toml", mission_config());
   expect_refused("--config x.toml --from mission.mcap --out out --set buffer=70", "buffer");
   EXPECT_EQ(live("--speed max --out out --set buffer=70 --fresh").exit_code, 0);
