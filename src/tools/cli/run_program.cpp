@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
@@ -199,6 +200,7 @@ void give_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
 }  // namespace
 
 int run_program(CLI::App& app, int argc, char** argv) {
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a write beyond the limit fails instead
   try {
     check_numbers(app);
     app.failure_message(failure_message);
