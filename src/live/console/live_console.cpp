@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -121,6 +122,19 @@ std::string status_text(const live::Health& health) {
   return text;
 }
 
+namespace {
+
+std::string found_text(const live::SourceHealth& source) {
+  std::string text = report::faults_text(source.faults);
+  if (source.is_silent() && std::isfinite(source.silent_s)) {
+    text +=
+        fmt::format("{}ends {:.0f} s before the log", text.empty() ? "" : ", ", source.silent_s);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string final_table(const live::Health& health) {
   chart::TextTable signals{.title = {},
                            .head = {"signal", "samples", "found"},
@@ -129,7 +143,7 @@ std::string final_table(const live::Health& health) {
                            .whole = true};
   for (const live::SourceHealth& source : health.sources) {
     signals.rows.push_back(
-        {source.name, std::to_string(source.faults.samples), report::faults_text(source.faults)});
+        {source.name, std::to_string(source.faults.samples), found_text(source)});
   }
   for (const live::TopicHealth& topic : health.topics) {
     if (topic.undecodable > 0) {

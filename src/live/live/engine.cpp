@@ -109,7 +109,6 @@ void Engine::receive(const std::function<Action()>& next_action) {
     bag::Message message;
     const Transport::Got got = transport_.next(message, kTuning.longest_wait);
     if (got == Transport::Got::message) {
-      last_message_ = Clock::now();
       received_ns_ = message.receive_ns;
       if (recorder_) {
         recorder_->write(transport_.topics(), message);
@@ -121,9 +120,11 @@ void Engine::receive(const std::function<Action()>& next_action) {
       }
       reckon();
       forward_rows();
+      last_message_ = Clock::now();  // a replay may have waited for the learner
     } else if (got == Transport::Got::end) {
       has_ended_ = true;
       finish_rows();
+      report();
     }
     if (Clock::now() - reported_ > kTuning.between_reports) {
       report();
@@ -159,16 +160,22 @@ double Engine::last_row_s() const {
 void Engine::forward_rows() {
   const double last_row_s = this->last_row_s();
   while (const SampleRow* const row = receiver_.next()) {
-    if (row->t > last_row_s) {
+    // After the first of a log's signals has ended, the others make rows that aren't whole.
+    const bool is_beyond = row->t > last_row_s;
+    if (is_beyond && (row->is_whole || row->t > receiver_.now_s())) {
       continue;
     }
     ++rows_;
     row_late_s_ = has_ended_ ? row_late_s_ : receiver_.now_s() - row->t;
-    reckoning_.take_row(*row, receiver_);
+    if (!is_beyond) {
+      reckoning_.take_row(*row, receiver_);
+    }
     if (!row->is_whole) {
-      ++rows_incomplete_;
+      note_incomplete();
       continue;
     }
+    rows_in_vain_ = 0;
+    no_rows_.clear();
     row_.t = row->t;
     row_.origin_ns = receiver_.origin_ns(row->t);
     std::ranges::copy(row->x, row_.x.begin());
@@ -181,6 +188,42 @@ void Engine::forward_rows() {
     const bool is_kept = queue_.push(row_, reach_.has_value());
     models_wanted_ += row_.wants_model && is_kept ? 1 : 0;
   }
+}
+
+void Engine::note_incomplete() {
+  ++rows_incomplete_;
+  ++rows_in_vain_;
+  const double lasted_s = static_cast<double>(rows_in_vain_) / configuration_.plan.rate_hz;
+  if (no_rows_.empty() && lasted_s >= kTuning.longest_in_vain_s) {
+    no_rows_ = fmt::format("no row has been whole for {:.0f} s", kTuning.longest_in_vain_s) +
+               why_incomplete();
+  }
+}
+
+// ": u comes at 1.0 Hz, its window of 1.2 s needs 3 samples"; empty: unknown.
+std::string Engine::why_incomplete() const {
+  constexpr std::size_t kIntervals = 3;
+  const StreamPlan& plan = configuration_.plan;
+  const SampleStream& stream = receiver_.stream();
+  for (const StreamPlan::Derived& derived : plan.derived) {
+    const SignalHistory& signal = stream.signal(plan.source(derived.of));
+    if (signal.size() <= kIntervals) {
+      continue;
+    }
+    const double lasted_s = signal.newest_s() - signal.time_s(signal.size() - 1 - kIntervals);
+    const double rate_hz = static_cast<double>(kIntervals) / lasted_s;
+    const int needed = plan.derivative.degree + 1;
+    if (rate_hz * plan.derivative.window_s < needed) {
+      return fmt::format(": {} comes at {:.1f} Hz, its window of {:.3g} s needs {} samples",
+                         derived.of, rate_hz, plan.derivative.window_s, needed);
+    }
+  }
+  for (std::size_t k = 0; k < plan.sources.size(); ++k) {
+    if (receiver_.silent_s(k) > plan.gap_s) {
+      return ": " + plan.sources[k].name + " is silent";
+    }
+  }
+  return "";
 }
 
 // A replay waits for the learner, so that a model serves from the same message on as it did live.
@@ -251,7 +294,10 @@ void Engine::report() {
 Health Engine::health() const {
   Health health;
   health.stamp_ns = received_ns_;
-  health.idle_s = std::chrono::duration<double>(Clock::now() - last_message_).count();
+  const bool waits = reach_ && queue_.size() > 0;  // for the learner
+  health.idle_s = has_ended_ || waits
+                      ? 0.0
+                      : std::chrono::duration<double>(Clock::now() - last_message_).count();
   health.transport = transport_.health();
   health.topics = receiver_.topics();
   const SampleStream& stream = receiver_.stream();
@@ -259,7 +305,7 @@ Health Engine::health() const {
     const StreamPlan::Source& source = configuration_.plan.sources[k];
     health.sources.push_back({.name = source.name,
                               .from = source.from,
-                              .silent_s = stream.silent_s(k),
+                              .silent_s = receiver_.silent_s(k),
                               .gap_s = configuration_.plan.gap_s,
                               .is_stuck = stream.signal(k).is_stuck(),
                               .faults = stream.signal(k).faults()});
@@ -267,6 +313,7 @@ Health Engine::health() const {
   health.clock_restarts = stream.restarts();
   health.rows = rows_;
   health.rows_incomplete = rows_incomplete_;
+  health.no_rows = no_rows_;
   health.row_late_s = row_late_s_;
   health.rows_dropped = reach_ ? 0 : queue_.dropped();  // a recording shows its rows again
   health.rows_waiting = queue_.size();

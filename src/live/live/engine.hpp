@@ -60,6 +60,8 @@ class Engine {
   double last_row_s() const;
   void forward_rows();
   void finish_rows();
+  void note_incomplete();
+  std::string why_incomplete() const;
   void forward_request();
   void predict();
   void reckon();
@@ -82,10 +84,12 @@ class Engine {
   std::int64_t received_ns_ = 0;  // of the newest message
   std::size_t rows_ = 0;
   std::size_t rows_incomplete_ = 0;
+  std::size_t rows_in_vain_ = 0;  // incomplete ones since the last whole row
+  std::string no_rows_;           // why there was no whole row for long
   double row_late_s_ = 0.0;
-  std::size_t unrecorded_ = 0;  // messages, by earlier recorders
-  Clock::time_point last_message_ = Clock::now();
-  Clock::time_point forwarded_;  // the last request
+  std::size_t unrecorded_ = 0;                     // messages, by earlier recorders
+  Clock::time_point last_message_ = Clock::now();  // dealt with
+  Clock::time_point forwarded_;                    // the last request
   Clock::time_point reported_ = Clock::now();
   Health before_;
   double before_s_ = 0.0;  // of before_, by the messages' clock

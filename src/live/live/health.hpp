@@ -131,6 +131,7 @@ struct Health {
   std::size_t clock_restarts = 0;   ///< times a clock was set back
   std::size_t rows = 0;             ///< made of messages
   std::size_t rows_incomplete = 0;  ///< rows with a value missing
+  std::string no_rows{};            ///< why there is no whole row; empty: there are
   double row_late_s = 0.0;       ///< from the last row's time to the message that completed the row
   std::size_t rows_dropped = 0;  ///< lost: the queue to the learner was full
   std::size_t rows_waiting = 0;  ///< in the queue

@@ -151,6 +151,9 @@ constexpr std::array kRun = std::to_array<HealthField<Health>>({
      run<&Health::rows>},
     {"incomplete", "rows_incomplete_total", "rows incomplete", "", count, learning,
      "rows with a value missing, not learned", run<&Health::rows_incomplete>},
+    {"no_rows", "rows_missing", "nothing to learn", "", text, learning,
+     "why there has been no whole row for long", text_at<Health, &Health::no_rows>,
+     alert(present, warn, AlertEvent::ended, "", "rows are whole again")},
     {"row_late_s", "row_late_seconds", "rows come late by/s", "s", gauge, learning,
      "from a row's time to the message that completes the row: half a window of poses or of a "
      "centred derivative, and more",

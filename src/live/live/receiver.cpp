@@ -263,6 +263,11 @@ bool Receiver::is_stuck(double t) const {
                              : std::ranges::any_of(velocities_, is_stuck);
 }
 
+double Receiver::silent_s(std::size_t source) const {
+  const double newest_s = stream_.signal(source).newest_stamp_s();
+  return std::isfinite(newest_s) ? newest_s_ - newest_s : std::numeric_limits<double>::infinity();
+}
+
 const SignalHistory* Receiver::input_signal(std::size_t input) const {
   return inputs_[input].source ? &stream_.signal(*inputs_[input].source) : nullptr;
 }

@@ -56,6 +56,8 @@ class Receiver {
   /// The signal of an input; null of a derived input.
   const SignalHistory* input_signal(std::size_t input) const;
   double now_s() const { return now_s_; }  ///< the newest stamp, since the origin
+  /// Since the signal's newest stamp, by the newest of all, after the end too; infinite: none yet.
+  double silent_s(std::size_t source) const;
 
   /// Present origin of times; empty before the first message.
   const std::optional<std::int64_t>& origin_ns() const { return origin_ns_; }

@@ -31,6 +31,8 @@ inline constexpr struct Tuning {
                                          ///< than rows, and a delay keeps few commands
   double most_kept_rows = 1e6;           ///< of a recording, for the alignment: a day at 10 Hz
 
+  double longest_in_vain_s = 10.0;  ///< of rows with a value missing, until that is told
+
   // Plausibility
   double checked_s = 120.0;              ///< of rows in a check: 24 windows of 5 s; howto/live.md
   double checked_rate_hz = 50.0;         ///< rows beyond tell a check no more

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -49,6 +50,25 @@ TEST_F(LiveCommand, EndsWithTheModelThatLearnGives) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     expect_model_of_learn("out", align);
   }
+}
+
+TEST_F(LiveCommand, ASignalThatEndsBeforeTheLogIsTold) {
+  constexpr std::int64_t kEnd = (1'700'000'000 + 40) * testing::kSecond;
+  std::vector<testing::Recorded> messages = little_mission(60.0);
+  std::erase_if(messages, [&](const auto& m) { return m.topic == 1 && m.receive_ns >= kEnd; });
+  write("mission.mcap", testing::mcap_of(testing::mission_topics(), messages));
+  write("x.toml", mission_config("clock = \"header\"", "align = \"none\""));
+  const Outcome outcome = live("--speed max --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("ends 20 s before the log"), std::string::npos) << outcome.out;
+  std::smatch rows;
+  ASSERT_TRUE(std::regex_search(outcome.out, rows, std::regex("(\\d+) rows with a value missing")))
+      << outcome.out;
+  EXPECT_NEAR(std::stod(rows[1]), 200.0, 5.0);
+  const std::string why = "no row has been whole for 10 s: n is silent";
+  EXPECT_NE(outcome.out.find(why), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+  expect_model_of_learn("out", "none");
 }
 
 TEST_F(LiveCommand, FindsTheShiftOfItsCommandsAsLearnDoes) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <deque>
@@ -19,6 +20,7 @@
 #include "kelpie/core/error.hpp"
 #include "live/checkpoint.hpp"
 #include "live/mission.hpp"
+#include "live/tuning.hpp"
 #include "support.hpp"
 
 namespace kelpie::engine_test {
@@ -39,7 +41,9 @@ class Vehicle final : public live::Transport {
       : topics_(std::move(topics)), messages_(std::move(messages)) {}
 
   const std::vector<bag::Topic>& topics() const override { return topics_; }
+  std::optional<log::Reach> reach() const override { return recorded; }
   bool ends = true;
+  std::optional<log::Reach> recorded{};  // with it a recording
 
   Got next(bag::Message& message, std::chrono::milliseconds /*timeout*/) override {
     if (at_ == messages_.size() && !ends) {
@@ -282,6 +286,20 @@ TEST_F(Live, AnotherRateIsLearnedAsWell) {
   expect_learned(run(messages), 770);
 }
 
+TEST_F(Live, AVelocityTooSlowForItsWindowIsTold) {
+  std::vector<Recorded> messages = little_mission(80.0);
+  std::size_t count = 0;
+  std::erase_if(messages, [&](const Recorded& m) {
+    return m.topic == 0 && is_between(m, 40, 1000) && ++count % 10 != 0;
+  });
+  const live::Health health = run(messages);
+  EXPECT_EQ(health.no_rows,
+            "no row has been whole for 10 s: u comes at 2.0 Hz, its window of 0.5 s needs 3 "
+            "samples");
+  EXPECT_NE(said_.find(health.no_rows), std::string::npos) << said_;
+  EXPECT_EQ(run(little_mission(80.0)).no_rows, "");
+}
+
 TEST_F(Live, NumbersThatAreNoneAreLeftOut) {
   std::vector<Recorded> messages = little_mission(80.0);
   for (Recorded& message : messages) {
@@ -361,6 +379,36 @@ TEST_F(Live, ALearnerThatFailsEndsTheRun) {
   });
   EXPECT_EQ(why, "no more room");
   EXPECT_LT(asked, kEnough);
+}
+
+// Messages of a recording wait for a learner that takes its time.
+TEST_F(Live, AReplayThatWaitsForItsLearnerIsNotIdle) {
+  class Slow final : public live::Output {
+   public:
+    explicit Slow(std::string& said) : said_(said) {}
+    void event(const std::string& line) override { said_ += line + "\n"; }
+    void learned(const live::LearnedSample& /*sample*/) override {
+      if (++learned_ == 100) {
+        std::this_thread::sleep_for(
+            std::chrono::duration<double>(live::kTuning.longest_idle_s + 0.5));
+      }
+    }
+
+   private:
+    std::string& said_;
+    int learned_ = 0;
+  };
+  testing::write_text(folder_ / "x.toml", mission_config("clock = \"header\"", "align = \"none\""));
+  const live::Configuration configuration = live::read_configuration(folder_ / "x.toml", {});
+  Vehicle vehicle(testing::mission_topics(), little_mission(80.0));
+  vehicle.recorded = log::Reach{.origin_ns = kBegin + 3 * kSecond / 1000, .end_s = 1000.0};
+  live::Outputs outputs;
+  Slow slow(said_);
+  outputs.add(slow);
+  live::Engine engine(configuration, folder_.path(), vehicle, std::nullopt, outputs, requests_);
+  engine.run([] { return live::Engine::Action::proceed; });
+  EXPECT_EQ(said_.find("no messages come"), std::string::npos) << said_;
+  EXPECT_EQ(engine.health().idle_s, 0.0);
 }
 
 TEST(Authority, IsUnknownOnceItsDiagnosisIs) {

@@ -114,6 +114,15 @@ TEST(HealthTable, ADiskThatTakesNoMoreIsSaidUntilItDoes) {
   EXPECT_EQ(live::events_of(well(), full), Lines{"recording goes on"});
 }
 
+TEST(HealthTable, RowsInVainAreAnAlertAndTwoEvents) {
+  live::Health health = well();
+  health.no_rows = "no row has been whole for 10 s: u is silent";
+  EXPECT_EQ(live::alerts_of(health, well()).at(0).text, health.no_rows);
+  EXPECT_EQ(live::events_of(health, well()), Lines{health.no_rows});
+  EXPECT_TRUE(live::events_of(health, health).empty());
+  EXPECT_EQ(live::events_of(well(), health), Lines{"rows are whole again"});
+}
+
 TEST(HealthTable, AMessageOfAnotherTypeIsSaidOnceWithItsReason) {
   live::Health health = well();
   health.topics[0].undecodable = 1;
