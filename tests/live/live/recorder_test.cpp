@@ -172,12 +172,13 @@ TEST(Recorder, AFullDiskWithALittleRoomRecordsNothingAndKeepsNoEmptyFiles) {
   bag::Message message = testing::message_of(little_mission(1.0).front());
   RandomStream random(3, "disk");
   std::vector<std::byte> noise(30'000);
-  std::ranges::generate(noise, [&] { return static_cast<std::byte>(random.uniform(0.0, 255.9)); });
   message.data = noise;
   const FullDisk full(100'000);
   const auto end = std::chrono::steady_clock::now() + 3 * live::kTuning.between_recordings / 2;
   std::size_t written = 0;
   for (; std::chrono::steady_clock::now() < end; ++written) {
+    std::ranges::generate(noise,
+                          [&] { return static_cast<std::byte>(random.uniform(0.0, 255.9)); });
     recorder.write(testing::mission_topics(), message);
     if (recorder.lost() > 0) {
       ASSERT_NE(recorder.error(), "") << "after " << written << " messages";
