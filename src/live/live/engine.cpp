@@ -160,9 +160,10 @@ double Engine::last_row_s() const {
 void Engine::forward_rows() {
   const double last_row_s = this->last_row_s();
   while (const SampleRow* const row = receiver_.next()) {
-    // After the first of a log's signals has ended, the others make rows that aren't whole.
+    // After the first of a log's signals has ended, the others make rows that lack its value; a
+    // command that is held for the gap is no value of the log.
     const bool is_beyond = row->t > last_row_s;
-    if (is_beyond && (row->is_whole || row->t > receiver_.now_s())) {
+    if (is_beyond && row->t > receiver_.now_s()) {
       continue;
     }
     ++rows_;
@@ -170,7 +171,7 @@ void Engine::forward_rows() {
     if (!is_beyond) {
       reckoning_.take_row(*row, receiver_);
     }
-    if (!row->is_whole) {
+    if (!row->is_whole || is_beyond) {
       note_incomplete();
       continue;
     }
