@@ -15,7 +15,8 @@ class Unit {
 
   /// Reads `m/s^2`, `m s^-2`, `N*m/(rad/s)^2`, `kg·m²`, `1/s`, `1`. As in the SI, a blank
   /// multiplies, and operators are evaluated from left to right: `m/s kg` is (m/s) kg. A name has
-  /// letters, `%` or `°`. Throws InputError with the text and the place of the error.
+  /// letters, `%` or `°`; sec, seconds, degrees, radians, meters and RPM are s, deg, rad, m and
+  /// rpm. Throws InputError with the text and the place of the error.
   static Unit parse(std::string_view text);
 
   static Unit named(std::string name);  ///< The unit of this name.
@@ -25,9 +26,9 @@ class Unit {
   Unit power(double exponent) const;                                             ///< Power.
 
   /// The unit in the SI, and the size of one in this unit: rad/s and 0.01745 for deg/s. Converted
-  /// are deg, °, mrad, mm, cm, km, knots (kn, knot, kt), g (9.80665 m/s²), and with these or with m
-  /// and rad also min and h; a unit without any of these is itself. Units of commands (us, rpm,
-  /// rev/min, V, %) stay, since actuators are told in the units of commands.
+  /// are deg, °, dps, mrad, mm, cm, km, knots (kn, knot, kt, kts), g (9.80665 m/s²), and with these
+  /// or with m and rad also min and h; a unit without any of these is itself. Units of commands
+  /// (us, rpm, rev/min, V, %) stay, since actuators are told in the units of commands.
   std::pair<Unit, double> in_si() const;
 
   bool operator==(const Unit& other) const = default;

@@ -27,16 +27,30 @@ struct Conversion {
 constexpr double kKnot = 1852.0 / 3600.0;
 constexpr std::array kMotion = std::to_array<Conversion>({{"deg", "rad", kRadPerDegree},
                                                           {"°", "rad", kRadPerDegree},
+                                                          {"dps", "rad/s", kRadPerDegree},
                                                           {"mrad", "rad", 1e-3},
                                                           {"mm", "m", 1e-3},
                                                           {"cm", "m", 0.01},
                                                           {"km", "m", 1e3},
                                                           {"kn", "m/s", kKnot},
                                                           {"kt", "m/s", kKnot},
+                                                          {"kts", "m/s", kKnot},
                                                           {"knot", "m/s", kKnot},
                                                           {"knots", "m/s", kKnot},
                                                           {"g", "m/s^2", 9.80665}});
 constexpr std::array kTimes = std::to_array<Conversion>({{"min", "s", 60.0}, {"h", "s", 3600.0}});
+
+// Names in words, as the symbols.
+constexpr std::array kNames =
+    std::to_array<std::pair<std::string_view, std::string_view>>({{"sec", "s"},
+                                                                  {"secs", "s"},
+                                                                  {"seconds", "s"},
+                                                                  {"degree", "deg"},
+                                                                  {"degrees", "deg"},
+                                                                  {"radians", "rad"},
+                                                                  {"meters", "m"},
+                                                                  {"metres", "m"},
+                                                                  {"RPM", "rpm"}});
 
 // Superscripts and raised dots as they are typed on a keyboard.
 std::string plain(std::string_view text) {
@@ -131,7 +145,10 @@ class UnitParser : TextScanner {
         std::isdigit(static_cast<unsigned char>(text_[position_])) != 0) {
       fail("a power is written with '^'");
     }
-    return Unit::named(std::string(text_.substr(start, position_ - start)));
+    const std::string_view given = text_.substr(start, position_ - start);
+    const auto* const word =
+        std::ranges::find(kNames, given, &std::pair<std::string_view, std::string_view>::first);
+    return Unit::named(std::string(word == kNames.end() ? given : word->second));
   }
 
   std::string given_;

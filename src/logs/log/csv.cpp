@@ -170,14 +170,20 @@ bool is_unit(std::string_view text) {
   }
 }
 
-// Whether it is one of those that vehicles' logs have: of other words Unit knows that they could
-// be.
+// Whether it is one of those that vehicles' logs have, by any of its spellings, or one that
+// `--units` converts: of other words Unit knows that they could be.
 bool is_known_unit(std::string_view text) {
-  constexpr std::array<std::string_view, 28> kUnits{
-      "m", "mm", "cm",  "km",  "s",  "ms", "us", "µs", "ns", "min", "h",  "rad", "deg", "°",
-      "N", "Nm", "rpm", "rev", "kg", "V",  "A",  "W",  "Pa", "bar", "Hz", "%",   "J",   "K"};
-  return std::ranges::find(kUnits, text) != kUnits.end() ||
-         (text.find_first_of("/^*") != std::string_view::npos && is_unit(text));
+  constexpr std::array<std::string_view, 24> kUnits{
+      "m",   "s",   "ms", "us", "µs", "ns", "min", "h",   "rad", "N", "Nm", "rpm",
+      "rps", "rev", "kg", "V",  "A",  "W",  "Pa",  "bar", "Hz",  "%", "J",  "K"};
+  if (!is_unit(text)) {
+    return false;
+  }
+  const Unit unit = Unit::parse(text);
+  const bool is_one_name = text.find(' ') == std::string_view::npos;
+  return text.find_first_of("/^*") != std::string_view::npos ||
+         std::ranges::find(kUnits, unit.text()) != kUnits.end() ||
+         (is_one_name && unit.in_si().first != unit);
 }
 
 // "u [m/s]" as u and m/s; what has no unit behind it as it is.

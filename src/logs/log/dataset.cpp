@@ -374,22 +374,22 @@ void Table::require_numbers(std::size_t column) const {
 }
 
 double Table::seconds_per_unit(std::size_t column) const {
-  constexpr std::array<std::pair<std::string_view, double>, 10> kSeconds{{{"", 1.0},
-                                                                          {"s", 1.0},
-                                                                          {"sec", 1.0},
-                                                                          {"ms", 1e-3},
-                                                                          {"us", 1e-6},
-                                                                          {"µs", 1e-6},
-                                                                          {"ns", 1e-9},
-                                                                          {"min", 60.0},
-                                                                          {"h", 3600.0},
-                                                                          {"1", 1.0}}};
-  const std::string_view unit = column < units.size() ? std::string_view(units[column]) : "";
+  constexpr std::array<std::pair<std::string_view, double>, 9> kSeconds{{{"", 1.0},
+                                                                         {"s", 1.0},
+                                                                         {"ms", 1e-3},
+                                                                         {"us", 1e-6},
+                                                                         {"µs", 1e-6},
+                                                                         {"ns", 1e-9},
+                                                                         {"min", 60.0},
+                                                                         {"h", 3600.0},
+                                                                         {"1", 1.0}}};
+  const std::string given = column < units.size() ? units[column] : "";
+  const std::string unit = given.empty() ? given : Unit::parse(given).text();
   const auto* const found =
       std::ranges::find(kSeconds, unit, &decltype(kSeconds)::value_type::first);
   if (found == kSeconds.end()) {
     refuse(*this, names[column],
-           fmt::format("is in {}, which is not a unit of time; use s or ms", unit));
+           fmt::format("is in {}, which is not a unit of time; use s or ms", given));
   }
   return found->second;
 }

@@ -13,9 +13,10 @@
 #include <set>
 #include <string_view>
 
-#include "core/angle.hpp"
 #include "core/text.hpp"
+#include "kelpie/core/error.hpp"
 #include "kelpie/core/scaling.hpp"
+#include "kelpie/motion/unit.hpp"
 #include "log/ardusub.hpp"
 #include "log/draft_pose.hpp"
 #include "log/tuning.hpp"
@@ -212,18 +213,32 @@ std::string rate_of_change(const std::string& unit) {
   return unit.ends_with("/s") ? unit + "^2" : unit + "/s";
 }
 
-// Units of states that a draft turns into SI units.
-struct UnitFactor {
-  std::string_view unit;
-  double factor;
-  const char* si;
+// What a draft makes of a unit: the factor to the unit it writes.
+struct DraftUnit {
+  std::string text;
+  double factor = 1.0;
 };
-constexpr std::array kFactors = std::to_array<UnitFactor>({{"deg", kRadPerDegree, "rad"},
-                                                           {"deg/s", kRadPerDegree, "rad/s"},
-                                                           {"cm/s", 0.01, "m/s"},
-                                                           {"mm/s", 0.001, "m/s"},
-                                                           {"m/us", 1e6, "m/s"},
-                                                           {"mV", 0.001, "V"}});
+
+// Units of motion in the SI, as --units converts, and two that no other room converts. The text is
+// as people write: rad/s, not rad s^-1.
+DraftUnit draft_unit(const std::string& given) {
+  if (given.empty() || given == "mV" || given == "m/us") {
+    return given.empty()   ? DraftUnit{}
+           : given == "mV" ? DraftUnit{"V", 0.001}
+                           : DraftUnit{"m/s", 1e6};
+  }
+  try {
+    const auto [unit, factor] = Unit::parse(given).in_si();
+    for (const char* const usual : {"m/s", "rad/s", "m/s^2", "rad/s^2"}) {
+      if (unit == Unit::parse(usual)) {
+        return {usual, factor};
+      }
+    }
+    return {factor == 1.0 ? given : unit.text(), factor};
+  } catch (const InputError&) {
+    return {given};
+  }
+}
 
 class Planner {
  public:
@@ -456,15 +471,13 @@ class Planner {
   void add_line(DraftPlan::Group& group, const std::string& name, const CandidateColumn& column) {
     group.lines.push_back({name, column.name, signal_why(column)});
     used_.push_back(column);
-    std::string unit = column.unit;
-    if (const auto* const found = std::ranges::find(kFactors, column.unit, &UnitFactor::unit);
-        found != kFactors.end()) {
-      unit = found->si;
-      plan_.scales.push_back({name, fmt::format("{}", found->factor),
-                              fmt::format("{} to {}", found->unit, found->si)});
+    const DraftUnit unit = draft_unit(column.unit);
+    if (unit.factor != 1.0) {
+      plan_.scales.push_back(
+          {name, fmt::format("{}", unit.factor), fmt::format("{} to {}", column.unit, unit.text)});
     }
-    if (!unit.empty()) {
-      plan_.units.push_back({name, unit, {}});
+    if (!unit.text.empty()) {
+      plan_.units.push_back({name, unit.text, {}});
     }
     plan_.taken.push_back(fmt::format("{} = {} ({})", name, column.name, signal_why(column)));
   }

@@ -337,7 +337,15 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
 
 std::map<std::string, std::string> row_units(const StreamPlan& plan, const Roles& roles) {
   std::map<std::string, std::string> units = all_units({}, plan, roles);
-  std::erase_if(units, [&](const auto& unit) { return !roles.units.contains(unit.first); });
+  const std::vector<std::string> columns = sampled_columns(plan);
+  // Positions and quaternions are converted with the rest, but become other columns.
+  const auto is_used_up = [&](const std::string& name) {
+    return std::ranges::count(plan.sources, name, &StreamPlan::Source::name) > 0 &&
+           std::ranges::count(columns, name) == 0;
+  };
+  std::erase_if(units, [&](const auto& unit) {
+    return !roles.units.contains(unit.first) || is_used_up(unit.first);
+  });
   return units;
 }
 

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <string_view>
 #include <unordered_set>
 #include <vector>
 
+#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "log/dataset.hpp"
@@ -73,11 +75,21 @@ bool are_equal(std::span<const double> a, std::span<const double> b) {
          });
 }
 
+// "u" of "u [furlongs]", whose unit is unknown; "v[0]" is a name.
+std::string_view without_unit(std::string_view name) {
+  const std::size_t bracket = name.find_last_of("[(");
+  const bool has_one = bracket != std::string_view::npos && bracket > 0 &&
+                       (name.ends_with(']') || name.ends_with(')'));
+  const bool is_index = has_one && name[bracket + 1] >= '0' && name[bracket + 1] <= '9';
+  return has_one && !is_index ? trimmed(name.substr(0, bracket)) : name;
+}
+
 // What the names of a table's columns tell of each other.
 class Header {
  public:
   explicit Header(const Table& table)
       : table_(table), names_(table.names.begin(), table.names.end()) {
+    std::ranges::transform(table.names, std::inserter(names_, names_.end()), without_unit);
     for (std::size_t column = 0; column < table.texts.size(); ++column) {
       if (table.is_time(column)) {
         stamps_.insert(table.names[column]);
@@ -90,7 +102,7 @@ class Header {
   }
 
   bool is_acceleration(std::string_view name) const {
-    return std::ranges::any_of(differentiated(name),
+    return std::ranges::any_of(differentiated(without_unit(name)),
                                [&](std::string_view stem) { return is_quantity(stem); });
   }
 

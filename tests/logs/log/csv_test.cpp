@@ -188,6 +188,22 @@ RC_GTEST_PROP(Csv, AnyBytesAreReadOrRefused, (const std::vector<std::uint8_t>& b
   }
 }
 
+TEST(Csv, UnitsInAHeaderAreThoseOfTheOption) {
+  for (const std::string unit : {"knots", "knot", "kn", "kt", "kts", "deg/sec", "m/sec", "dps",
+                                 "degrees", "deg", "mrad", "g", "RPM", "sec", "m/s", "°/s"}) {
+    const log::Table table = parse_csv("t,u [" + unit + "],n (" + unit + ")\n0,1,2\n");
+    EXPECT_EQ(table.names, (Names{"t", "u", "n"})) << unit;
+    EXPECT_EQ(table.units, (Names{"", unit, unit}));
+  }
+  for (const std::string name : {"v[0]", "w [left]", "w [cm left]", "n (second)"}) {
+    EXPECT_EQ(parse_csv(name + ",u\n0,1\n").names[0], name);
+  }
+  const log::Table timed = parse_csv("t [seconds],u\n0,1\n");
+  EXPECT_EQ(timed.seconds_per_unit(0), 1.0);
+  EXPECT_EQ(log::si_unit("log.csv", "r", "deg/sec"), log::si_unit("log.csv", "r", "dps"));
+  EXPECT_EQ(log::si_unit("log.csv", "r", "m/sec"), log::si_unit("log.csv", "r", "m/s"));
+}
+
 TEST(Csv, ReadsTheRealLog) {
   const auto file = data_file("dagon_config1.csv");
   if (file.empty()) {

@@ -104,6 +104,27 @@ TEST(Draft, KnowsTheHabitsOfCsvFiles) {
   }
 }
 
+TEST(Draft, EveryUnitOfMotionBecomesOneOfTheSi) {
+  log::Table table = table_of("t,u,v,r,n1,rudder");
+  table.units = {"s", "kts", "m/sec", "deg/sec", "RPM", "degrees"};
+  const log::Draft found = log::draft_of(table);
+  ASSERT_TRUE(found.is_complete()) << join_text(found.open, "\n");
+  const log::LogConfig config = found.config("log.csv");
+  const auto scale = [&](const std::string& name) {
+    return config.plan.sources[config.plan.source(name)].scale;
+  };
+  EXPECT_NEAR(scale("u"), 1852.0 / 3600.0, 1e-12);
+  EXPECT_EQ(scale("v"), 1.0);
+  EXPECT_NEAR(scale("r"), std::acos(-1.0) / 180.0, 1e-12);
+  EXPECT_EQ(scale("n1"), 1.0);
+  EXPECT_NEAR(scale("rudder"), std::acos(-1.0) / 180.0, 1e-12);
+  for (const auto& [name, unit] :
+       {std::pair("u", "m/s"), std::pair("v", "m/s"), std::pair("r", "rad/s"),
+        std::pair("rdot", "rad/s^2"), std::pair("rudder", "rad")}) {
+    EXPECT_EQ(config.roles.units.at(name), unit) << name;
+  }
+}
+
 TEST(Draft, KnowsWherePulsesOfServosRest) {
   log::Table table = table_of("t,u,v,r,pwm1,pwm2,rpm");
   for (std::size_t row = 0; row < table.rows(); ++row) {

@@ -225,5 +225,24 @@ TEST_F(PoseConfig, RefusesWhatIsNoPose) {
             std::string::npos);
 }
 
+// Positions are no columns of the rows; their units are used up where poses become velocities.
+TEST_F(PoseConfig, AHeaderWithUnitsIsAsGoodAsOneWithout) {
+  std::string csv = PoseLog(120.0).csv(0.001);
+  csv.replace(0, csv.find('\n'), "time,north [cm],east [cm],heading [rad],thruster1,thruster2");
+  const log::Log guessed = log::read_log({.path = write("pose.csv", csv)}, {}, {});
+  const log::Dataset data = guessed.dataset();
+  EXPECT_EQ(data.target_names, (Names{"udot", "vdot", "rdot"}));
+  EXPECT_EQ(data.input_names, (Names{"u", "v", "r", "thruster1", "thruster2"}));
+  csv.replace(0, csv.find('\n'), "time,north [m],east [m],heading [rad],thruster1,thruster2");
+  const log::Log metres = log::read_log({.path = write("pose.csv", csv)}, {}, {});
+  EXPECT_NEAR(100.0 * column(guessed, "u")[200], column(metres, "u")[200], 0.05);
+  const log::Log told = read(csv,
+                             "[log]\ntime = \"time\"\nrate = 5\n"
+                             "pose = {x = \"north\", y = \"east\", yaw = \"heading\"}\n"
+                             "units = {x = \"m\"}\n"
+                             "[log.commands]\nn = \"thruster1\"\nm = \"thruster2\"\n");
+  EXPECT_EQ(told.dataset().target_names, (Names{"udot", "vdot", "rdot"}));
+}
+
 }  // namespace
 }  // namespace kelpie::pose_config_test

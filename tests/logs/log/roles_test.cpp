@@ -60,6 +60,15 @@ TEST(Roles, AnAccelerationIsNamedAfterAColumnOfTheSameCase) {
   EXPECT_THROW(guess("u,Udot"), InputError);
 }
 
+TEST(Roles, ADerivativeIsNoInputWhereTheUnitOfItsColumnIsUnknown) {
+  const log::Roles roles = guess("t,u [furlongs],v (fl),n,udot,vdot (fl/t)");
+  EXPECT_EQ(roles.targets, (Names{"udot", "vdot (fl/t)"}));
+  EXPECT_EQ(roles.inputs, (Names{"u [furlongs]", "v (fl)", "n"}));
+  EXPECT_EQ(guess("t,u [furlongs],w,n,udot,wdot", {.targets = {"wdot"}}).inputs,
+            (Names{"w", "u [furlongs]", "n"}));
+  EXPECT_EQ(guess("t,n[0],n[1],dn[0],u,udot").inputs, (Names{"u", "n[0]", "n[1]", "dn[0]"}));
+}
+
 TEST(Roles, WordsAreNeverInputs) {
   const std::string text = "mode,u,n1,udot\nhover,1,2,3\n";
   EXPECT_EQ(log::guess_roles(log::parse_csv(text, "log.csv"), {}).inputs, (Names{"u", "n1"}));
