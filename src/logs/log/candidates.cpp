@@ -51,6 +51,9 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
     words.pop_back();
   }
   const std::string whole = join_text(words, "_");
+  if (whole == "az") {  // beside ax and ay an acceleration
+    return std::nullopt;
+  }
   NamedCommand command;
   bool is_one = false;
   const auto meet = [&](const KnownWord& known) {

@@ -180,10 +180,10 @@ std::string usual_time(const Table& table, const Roles& given);
 /// Guesses roles from the names: targets are "Xdot", "dX" and "X_dot" for a column X other than
 /// time; the time is usual_time(); the configuration is "conf" or "configuration". Left out are
 /// "split", columns of words, further time stamps, "X_true" for a column X, ignored columns,
-/// constants, counters, positions, headings, batteries, and columns equal to an earlier input; the
-/// remaining columns are inputs, velocities (velocity_axis()) first. Roles in `given` are kept.
-/// Throws InputError on an ignored column that is missing or has a role, no target, no input, or
-/// more inputs than a model takes.
+/// constants, counters, positions, headings, batteries, measurements (ax, imu_…, temperatures, sog,
+/// satellites, power), and columns equal to an earlier input; the remaining columns are inputs,
+/// velocities (velocity_axis()) first. Roles in `given` are kept. Throws InputError on an ignored
+/// column that is missing or has a role, no target, no input, or more inputs than a model takes.
 Roles guess_roles(const Table& table, const Roles& given);
 
 /// The column of the vehicle's heading for the estimate of a current: psi, yaw, heading, hdg or

@@ -52,7 +52,8 @@ Draft written(const DraftPlan& plan, const std::string& log, const std::string& 
           .taken = plan.taken,
           .remarks = plan.remarks,
           .open = plan.open,
-          .fields = plan.open.empty() ? "" : fields_text(plan.others)};
+          .fields = plan.open.empty() ? "" : fields_text(plan.others),
+          .has_targets = !plan.targets.empty()};
 }
 
 // What is missing may be in topics that nobody can read: "/a, /b: pkg/Type: its definition …".

@@ -21,6 +21,7 @@ struct Draft {
   /// the log can be learned with the draft.
   std::vector<std::string> open{};
   std::string fields{};  ///< of an incomplete draft: what the log has that changes, for the user
+  bool has_targets = false;  ///< velocities are known, whose derivatives are the targets
 
   bool is_complete() const { return open.empty(); }
   /// What an incomplete draft leaves open, and the remedy, for the user: a line each; `more`: what

@@ -106,17 +106,56 @@ struct SignalRates {
   double commands_hz;  // of the slowest command
 };
 
-void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
-  if (!plan.is_of_bag) {
-    if (plan.time.empty()) {
-      plan.open.emplace_back(
-          "time: no column is named t, time, stamp or the like; accelerations take one: --time "
-          "names the column");
-    } else if (const double rate = report.topics.front().rate_hz; rate < 0.01 || rate > 1e5) {
-      plan.open.push_back(
-          fmt::format("time: the column {} gives {:.3g} rows per second, which is hardly in s",
-                      plan.time, rate));
+// A unit of a table's stamps that count as s, and are not likely to be: by the column's name
+// (time_ms), or because a log in this unit has the rate of usual logs; "": none.
+std::string unit_of_stamps(const bag::TopicReport& table, const std::string& time) {
+  constexpr std::array<std::pair<const char*, double>, 3> kUnits{
+      {{"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}}};
+  constexpr double kSlowest = 0.9;  // rows per second, by hand
+  const auto column = std::ranges::find(table.fields, time, &bag::FieldRange::path);
+  if (column == table.fields.end() || !column->unit.empty()) {
+    return "";
+  }
+  const std::vector<std::string> words = words_of(time);
+  for (const auto& [unit, per_s] : kUnits) {
+    if (!words.empty() && words.back() == unit) {
+      return unit;
     }
+  }
+  for (const auto& [unit, per_s] : kUnits) {
+    if (table.rate_hz * per_s >= kSlowest) {
+      return unit;
+    }
+  }
+  return "";
+}
+
+// What is wrong with a table's time; "": nothing.
+std::string time_problem(const bag::TopicReport& table, const DraftPlan& plan) {
+  constexpr double kSlowestPose = 0.2;  // rows per second, by hand
+  if (plan.time.empty()) {
+    return "time: no column is named t, time, stamp or the like; accelerations take one: --time "
+           "names the column";
+  }
+  const double rate = table.rate_hz;
+  const std::string unit = unit_of_stamps(table, plan.time);
+  const std::string remedy =
+      unit.empty() ? ""
+                   : fmt::format(": --units {}={} says that it is in {}", plan.time, unit, unit);
+  if (rate < 0.01 || rate > 1e5 || (!plan.pose.empty() && rate < kSlowestPose && !unit.empty())) {
+    return fmt::format("time: the column {} gives {:.3g} rows per second, which is hardly in s{}",
+                       plan.time, rate, rate < 1.0 ? remedy : "");
+  }
+  const std::vector<std::string> words = words_of(plan.time);
+  return !unit.empty() && words.back() == unit
+             ? fmt::format("time: by its name the column {} is not in s{}", plan.time, remedy)
+             : "";
+}
+
+void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+  const std::string problem = plan.is_of_bag ? "" : time_problem(report.topics.front(), plan);
+  if (!problem.empty()) {
+    plan.open.push_back(problem);
   }
   if (plan.targets.empty()) {
     return;
@@ -138,11 +177,16 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
   }
   plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
   plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
-  if (plan.pose.empty() && plan.window_s > stream::kTuning.longest_window_s) {
+  if (problem.empty() && plan.pose.empty() && plan.window_s > stream::kTuning.longest_window_s) {
+    const std::string unit = plan.is_of_bag ? "" : unit_of_stamps(report.topics.front(), plan.time);
     plan.open.push_back(fmt::format(
         "velocities come every {:.3g} s, too slowly for accelerations, which are slopes over six "
-        "samples and {:g} s at most; a column of measured accelerations can be named by --targets",
-        1.0 / rates.moving_hz, stream::kTuning.longest_window_s));
+        "samples and {:g} s at most; a column of measured accelerations can be named by "
+        "--targets{}",
+        1.0 / rates.moving_hz, stream::kTuning.longest_window_s,
+        unit.empty()
+            ? ""
+            : fmt::format("; stamps in {} are told by --units {}={}", unit, plan.time, unit)));
   }
 }
 
@@ -280,6 +324,7 @@ class Planner {
     if (plan_.is_of_bag && (plan_.states.empty() || plan_.commands.empty())) {
       list_fields();
     }
+    tell_unused();
     return std::move(plan_);
   }
 
@@ -393,6 +438,29 @@ class Planner {
   }
 
   bool is_asked(Part part) const { return asked_.contains(part); }
+
+  // Of a table: a bag has too many.
+  void tell_unused() {
+    constexpr std::size_t kShown = 16;
+    std::vector<std::string> names;
+    std::size_t more = 0;
+    for (const bag::FieldRange& field :
+         plan_.is_of_bag ? std::vector<bag::FieldRange>{} : report_.topics.front().fields) {
+      const CandidateColumn column = column_of(report_.topics.front(), field);
+      const bool is_of_draft =
+          field.path == plan_.time || !column.varies() || !can_be_written(column.name) ||
+          std::ranges::find(used_, column.name, &CandidateColumn::name) != used_.end();
+      if (!is_of_draft && names.size() < kShown) {
+        names.push_back(column.name);
+      } else if (!is_of_draft) {
+        ++more;
+      }
+    }
+    if (!names.empty()) {
+      plan_.taken.push_back("not used: " + join_text(names, ", ") +
+                            (more > 0 ? fmt::format(" and {} more", more) : ""));
+    }
+  }
 
   void list_fields() {
     constexpr std::size_t kMost = 200;

@@ -124,16 +124,18 @@ constexpr std::array kCommandWords = std::to_array<CommandWords>({
      "throttle# esc# actuator# actuators th# n# m# cmd# command# commands control#",
      Kind::thrust, 1},
     {"tau# taux tauy taun", Kind::wrench, 2},
-    {"rudder# fin# fins elevator# delta# azimuth# az#", Kind::angle, 1},
+    {"rudder# fin# fins elevator# delta# azimuth# az# steering# helm# tiller# wheel#", Kind::angle,
+     1},
     {"u_speed", Kind::thrust, 1, kLetters},
     {"u_heading", Kind::angle, 1, kLetters},
 });
 
 constexpr std::array kOtherWords = std::to_array<std::string_view>(
-    {"time",    "stamp",   "timestamp",   "secs", "nsecs",       "sec",        "nanosec", "seq",
-     "current", "voltage", "temperature", "temp", "battery",     "covariance", "mode",    "error",
-     "err",     "limit",   "min",         "max",  "status_code", "fault",      "armed",   "enabled",
-     "id",      "index",   "count",       "true", "power"});
+    {"time",  "stamp",   "timestamp",  "secs",        "nsecs", "sec",     "nanosec",
+     "seq",   "current", "voltage",    "temperature", "temp",  "battery", "covariance",
+     "mode",  "error",   "err",        "limit",       "min",   "max",     "status_code",
+     "fault", "armed",   "enabled",    "id",          "index", "count",   "true",
+     "power", "sats",    "satellites", "imu"});
 
 constexpr std::array kCommandFields = std::to_array<std::string_view>(
     {"cmd", "command", "input", "data", "value", "speed", "rpm", "rps", "velocity", "omega", "pwm",
@@ -190,8 +192,10 @@ constexpr std::array kPoseWords = std::to_array<PoseWords>({
 });
 
 constexpr std::array kTimes = std::to_array<std::string_view>(
-    {"timestamp", "time_s", "t_s", "times", "secs", "seconds", "sec", "elapsed", "elapsed_time",
-     "elapsed_s", "rosbag_time", "rosbagtimestamp", "clock", "date", "datetime", "unix_time"});
+    {"timestamp",    "time_s",  "t_s",          "times",        "secs",        "seconds",
+     "sec",          "elapsed", "elapsed_time", "elapsed_s",    "time_ms",     "t_ms",
+     "timestamp_ms", "time_us", "t_us",         "timestamp_us", "rosbag_time", "rosbagtimestamp",
+     "clock",        "date",    "datetime",     "unix_time"});
 
 bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;

@@ -235,6 +235,24 @@ void add_neutral_pulses(const Table& table, Roles& roles) {
   }
 }
 
+// What the user says of units of the table's columns, in the table as if its header said so: a
+// draft goes by it. Returns the other units, of columns that the rows will have.
+std::map<std::string, std::string> tell_units(const std::map<std::string, std::string>& units,
+                                              Table& table) {
+  std::map<std::string, std::string> others;
+  table.units.resize(table.names.size());
+  for (const auto& [name, text] : units) {
+    const auto found = std::ranges::find(table.names, name);
+    if (found == table.names.end()) {
+      others.emplace(name, text);
+      continue;
+    }
+    si_unit(table.source, name, text);
+    table.units[static_cast<std::size_t>(found - table.names.begin())] = text;
+  }
+  return others;
+}
+
 // Whether the samples of a draft have all these columns.
 bool gives(const Draft& draft, const std::vector<std::string>& inputs) {
   if (!draft.is_complete()) {
@@ -399,15 +417,20 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
   if (!is_of_bag && can_be_taken(table, roles, why_not)) {
     return taken_log(std::move(table), roles);
   }
+  Roles wanted = roles;
+  if (!is_of_bag) {
+    wanted.units = tell_units(roles.units, table);
+  }
   Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles.time);
   if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
     return taken_log(std::move(table), roles);  // who uses it says what is missing
   }
   if (!draft.is_complete()) {
-    refuse(source.path, {}, draft.unclear(source.path, why_not));
+    const bool lacks_targets = !why_not.starts_with("targets:") || !draft.has_targets;
+    refuse(source.path, {}, draft.unclear(source.path, lacks_targets ? why_not : ""));
   }
   const LogConfig drafted = draft.config(source.path);
-  Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(roles, drafted.roles));
+  Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(wanted, drafted.roles));
   log.draft = std::move(draft);
   return log;
 }

@@ -39,6 +39,12 @@ constexpr std::array<std::string_view, 8> kHeadings{"heading", "psi",    "yaw", 
 constexpr std::array<std::string_view, 5> kHeadingOfVehicle{"psi", "yaw", "heading", "hdg",
                                                             "compass"};
 constexpr std::array<std::string_view, 3> kAngleEndings{"", "_deg", "_rad"};
+// Words before the axis of an acceleration, and whole names.
+constexpr std::array<std::string_view, 3> kAccelerationWords{"acc", "accel", "acceleration"};
+constexpr std::array<std::string_view, 6> kAccelerations{"ax", "ay", "az", "accx", "accy", "accz"};
+constexpr std::array<std::string_view, 3> kMeasured{"power", "power_w", "sog"};
+constexpr std::array<std::string_view, 5> kMeasuredWords{"imu", "temp", "sats", "nsats",
+                                                         "satellites"};
 constexpr std::array<std::string_view, 4> kBatteryWords{"battery", "batt", "soc", "vbat"};
 constexpr std::array<std::string_view, 6> kBatteries{"volt",      "volts",     "voltage",
                                                      "voltage_v", "current_a", "amps"};
@@ -138,10 +144,34 @@ class Header {
   std::unordered_set<std::string_view> stamps_;
 };
 
+// What sensors feel of the motion or of the weather: effects of forces, or nothing of them.
+std::string measurement(std::string_view name) {
+  const std::vector<std::string> words = words_of(name);
+  const std::string whole = join_text(words, "_");
+  const bool is_of_axis = words.size() > 1 && words.back().size() == 1 && words.back() >= "x" &&
+                          words.back() <= "z" &&
+                          is_among(words[words.size() - 2], kAccelerationWords);
+  if (is_of_axis || is_among(whole, kAccelerations)) {
+    return "an acceleration";
+  }
+  const bool is_measured =
+      is_among(whole, kMeasured) || std::ranges::any_of(words, [](const std::string& word) {
+        return is_among(word, kMeasuredWords) || word.starts_with("temperature");
+      });
+  return is_measured ? "a measurement, no command" : "";
+}
+
 bool tells_battery(std::string_view name) {
   return is_among(name, kBatteries) ||
          std::ranges::any_of(words_of(name),
                              [](const std::string& word) { return is_among(word, kBatteryWords); });
+}
+
+// Whether a target is the derivative of the column.
+bool is_state(std::string_view name, const Roles& roles) {
+  return std::ranges::any_of(roles.targets, [&](const std::string& target) {
+    return is_among(name, differentiated(without_unit(target)));
+  });
 }
 
 // Why a column that could be an input is left out of the guessed inputs; empty: an input.
@@ -172,6 +202,9 @@ std::string reason_against(const Table& table, std::size_t column, const Roles& 
   }
   if (tells_battery(name)) {
     return "of a battery";
+  }
+  if (const std::string what = measurement(name); !what.empty() && !is_state(name, roles)) {
+    return what + "; --inputs takes it";
   }
   if (is_constant(values)) {
     return fmt::format("{} in every row", values.front());

@@ -104,6 +104,16 @@ TEST(Draft, KnowsTheHabitsOfCsvFiles) {
   }
 }
 
+TEST(Draft, TellsWhichColumnsOfATableAreNotUsed) {
+  const log::Draft found =
+      log::draft_of(table_of("t,u,v,r,motor,steering,az,n_sats,imu_az,still_rpm,mode_3"));
+  ASSERT_TRUE(found.is_complete()) << join_text(found.open, "\n");
+  EXPECT_EQ(inputs_of(found), "u,v,r,motor,steering");
+  EXPECT_EQ(found.taken.back(), "not used: az, n_sats, imu_az, mode_3");
+  EXPECT_EQ(inputs_of(log::draft_of(table_of("t,u,r,n_port,az_port,helm"))),
+            "u,r,n_port,az_port,helm");
+}
+
 TEST(Draft, EveryUnitOfMotionBecomesOneOfTheSi) {
   log::Table table = table_of("t,u,v,r,n1,rudder");
   table.units = {"s", "kts", "m/sec", "deg/sec", "RPM", "degrees"};

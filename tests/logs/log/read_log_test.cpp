@@ -152,6 +152,40 @@ TEST_F(ReadLog, AUnitIsOfWhatTheScaleGives) {
             std::string::npos);
 }
 
+TEST_F(ReadLog, UnitsThatTheUserGivesAreKnownToTheDraft) {
+  const auto text = [](const std::string& time) {
+    std::string lines = time + ",u,n1\n";
+    for (int k = 0; k < 400; ++k) {
+      lines += std::to_string(40 * k) + "," + std::to_string(std::sin(0.01 * k)) + "," +
+               std::to_string(std::cos(0.02 * k)) + "\n";
+    }
+    return lines;
+  };
+  for (const std::string time : {"t", "time_ms"}) {
+    const std::string file = write("log.csv", text(time));
+    const std::string said =
+        testing::message_of<InputError>([&] { log::read_log({.path = file}, {}, {}); });
+    EXPECT_NE(said.find("--units " + time + "=ms"), std::string::npos) << said;
+    EXPECT_EQ(said.find("derivative of another"), std::string::npos) << said;
+    const log::Log log =
+        log::read_log({.path = file}, {}, {.units = {{time, "ms"}, {"u", "knots"}}});
+    EXPECT_EQ(log.sampling.rate_hz, 25.0);
+    EXPECT_NEAR(log.table.columns[0].back(), 0.04 * 399, 0.05);
+    const auto row = static_cast<std::size_t>(
+        std::ranges::find_if(log.table.columns[0], [](double t) { return t > 7.99; }) -
+        log.table.columns[0].begin());
+    const std::vector<double>& u = log.table.columns[log.table.find("u")];
+    EXPECT_NEAR(u[row], std::sin(2.0) * 1852.0 / 3600.0, 1e-4);
+  }
+  // A unit of the header, said again, is no second unit.
+  const std::string twice = write("log.csv", text("t [ms]"));
+  EXPECT_EQ(log::read_log({.path = twice}, {}, {.units = {{"t", "ms"}}}).sampling.rate_hz, 25.0);
+  EXPECT_NE(testing::message_of<InputError>([&] {
+              log::read_log({.path = twice}, {}, {.units = {{"t", "m/s2"}}});
+            }).find("is not a unit"),
+            std::string::npos);
+}
+
 TEST_F(ReadLog, ATableWithRawColumnsIsServedAlike) {
   std::string text = "stamp,speed_x,rpm\n";
   for (int k = 0; k < 200; ++k) {

@@ -66,7 +66,21 @@ TEST(Roles, ADerivativeIsNoInputWhereTheUnitOfItsColumnIsUnknown) {
   EXPECT_EQ(roles.inputs, (Names{"u [furlongs]", "v (fl)", "n"}));
   EXPECT_EQ(guess("t,u [furlongs],w,n,udot,wdot", {.targets = {"wdot"}}).inputs,
             (Names{"w", "u [furlongs]", "n"}));
-  EXPECT_EQ(guess("t,n[0],n[1],dn[0],u,udot").inputs, (Names{"u", "n[0]", "n[1]", "dn[0]"}));
+  EXPECT_EQ(guess("t,n[0],n[1],ndot,u,udot").inputs, (Names{"u", "n[0]", "n[1]", "ndot"}));
+}
+
+TEST(Roles, WhatSensorsMeasureIsNoCommand) {
+  const std::string measured =
+      "ax,ay,az,accx,acc_y,AccelZ,imu_1,temp,temp_c,temperature2,water_temperature,sog,cog,n_sats,"
+      "sats,power,power_w,lat,longitude";
+  const std::string commands = "a1,az1,accumulator,acc,motor_power,n1,n_port,template";
+  EXPECT_EQ(guess("t,u," + measured + "," + commands + ",udot").inputs,
+            split_text("u," + commands, ','));
+  const log::Table table = with_columns("t,u,ax,n,udot");
+  EXPECT_EQ(log::left_out_text(table, {}),
+            "log.csv: ax: is left out of the inputs: an acceleration; --inputs takes it\n");
+  EXPECT_EQ(log::guess_roles(table, {.inputs = {"u", "ax"}}).inputs, (Names{"u", "ax"}));
+  EXPECT_EQ(guess("t,imu_u,n,imu_udot").inputs, (Names{"imu_u", "n"})) << "a state";
 }
 
 TEST(Roles, WordsAreNeverInputs) {
