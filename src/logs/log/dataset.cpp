@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -17,6 +18,8 @@
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/csv_time.hpp"
+#include "log/known_roles.hpp"
+#include "motion/signal_names.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -322,6 +325,65 @@ void convert_units(Table& table, const std::map<std::string, std::string>& units
       value *= factor;
     }
   }
+}
+
+namespace {
+
+// Whether a column can be the pulses of a servo or of a motor controller.
+bool may_be_pulses(const Table& table, std::size_t column) {
+  const std::string unit = column < table.units.size() ? table.units[column] : "";
+  const auto begins_one_of = [](const std::string& word, std::initializer_list<const char*> all) {
+    return std::ranges::any_of(all, [&](const char* start) { return word.starts_with(start); });
+  };
+  const std::vector<std::string> words = words_of(table.names[column]);
+  const bool is_speed = std::ranges::any_of(words, [&](const std::string& word) {
+    return begins_one_of(word, {"rpm", "rps", "rev", "speed", "omega", "engine"});
+  });
+  const bool is_command =
+      names_thruster(table.names[column]) || std::ranges::any_of(words, [&](const auto& word) {
+        return begins_one_of(word, {"pwm", "chan", "rudder", "fin", "elevator", "steering"});
+      });
+  return is_command && !is_speed && (unit.empty() || unit == "us" || unit == "µs");
+}
+
+// The number of zeros in a column of pulses to both sides of rest; 0 for any other column.
+std::size_t missing_pulses(const std::vector<double>& values) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  std::size_t zeros = 0;
+  for (const double value : values) {
+    if (value == 0.0) {
+      ++zeros;
+    } else if (std::isfinite(value)) {
+      if (value != std::floor(value)) {
+        return 0;
+      }
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  return are_pulses_about_rest(low, high) ? zeros : 0;
+}
+
+}  // namespace
+
+std::string set_missing_pulses(Table& table) {
+  std::vector<std::string> names;
+  std::size_t rows = 0;
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    const std::size_t missing =
+        may_be_pulses(table, column) ? missing_pulses(table.columns[column]) : 0;
+    if (missing > 0) {
+      std::ranges::replace(table.columns[column], 0.0, kNeutralPulseUs);
+      names.push_back(table.names[column]);
+      rows = std::max(rows, missing);
+    }
+  }
+  return names.empty()
+             ? ""
+             : fmt::format("{}: {}: 0 is no pulse; it counts as rest, {:g} µs, in {} {}\n",
+                           table.source, join_text(names, ", "), kNeutralPulseUs, rows,
+                           rows == 1 ? "row" : "rows");
 }
 
 std::string columns_text(const Table& table) {

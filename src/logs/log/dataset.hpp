@@ -169,6 +169,12 @@ std::map<std::string, Unit> column_units(const Table& table, const Roles& roles)
 /// si_unit() does.
 void convert_units(Table& table, const std::map<std::string, std::string>& units);
 
+/// Sets pulses of 0 to the pulse at rest (kNeutralPulseUs), in columns of commands whose other
+/// values are pulses of servos in whole µs to both sides of rest: a disarmed autopilot sends none.
+/// Columns with another unit, or of speeds by their names, stay. Returns a line for the user; ""
+/// where nothing was set.
+std::string set_missing_pulses(Table& table);
+
 /// Names of columns that are taken as time.
 inline constexpr std::array<std::string_view, 3> kTimeNames{"t", "time", "stamp"};
 

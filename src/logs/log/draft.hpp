@@ -47,7 +47,7 @@ Draft draft_of(const Table& table, const std::string& time = "");
 struct InspectedLog {
   bag::BagReport report;
   Draft draft;
-  std::string losses{};  ///< of a damaged bag, for people: a line each
+  std::string losses{};  ///< as Log::losses, for people: a line each
 };
 
 /// Reads the whole log. Throws as bag::open_bag(), bag::inspect_bag() and read_csv() do.

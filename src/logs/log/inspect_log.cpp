@@ -102,8 +102,9 @@ bag::BagReport inspect_table(const Table& table) {
 
 InspectedLog inspect_log(const LogSource& source) {
   if (!bag::is_bag(source.path)) {
-    const Table table = read_csv(source.path);
-    return {.report = inspect_table(table), .draft = draft_of(table)};
+    Table table = read_csv(source.path);
+    std::string missing = set_missing_pulses(table);
+    return {.report = inspect_table(table), .draft = draft_of(table), .losses = std::move(missing)};
   }
   const bag::MessageDefinitions definitions(source.definitions);
   const std::unique_ptr<bag::MessageReader> bag = source.open_bag();

@@ -392,12 +392,11 @@ bag::RowTimes row_times(const LogConfig& config, const Roles& roles) {
           .rate_hz = roles.rate_hz > 0.0 ? roles.rate_hz : config.roles.rate_hz};
 }
 
-Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
-  const bool is_of_bag = bag::is_bag(source.path);
-  Table table;
-  if (!is_of_bag) {
-    table = read_csv(source.path);
-  }
+namespace {
+
+// `table`: the content of a log that is no bag.
+Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig& config,
+           const Roles& roles) {
   if (config.makes_samples()) {
     if (!roles.pose.empty()) {
       refuse(config.source, "--pose",
@@ -432,6 +431,17 @@ Log read_log(const LogSource& source, const LogConfig& config, const Roles& role
   const LogConfig drafted = draft.config(source.path);
   Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(wanted, drafted.roles));
   log.draft = std::move(draft);
+  return log;
+}
+
+}  // namespace
+
+Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
+  const bool is_of_bag = bag::is_bag(source.path);
+  Table table = is_of_bag ? Table{} : read_csv(source.path);
+  const std::string missing = set_missing_pulses(table);
+  Log log = log_of(source, is_of_bag, std::move(table), config, roles);
+  log.losses += missing;
   return log;
 }
 

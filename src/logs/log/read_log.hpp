@@ -22,8 +22,10 @@ struct Log {
   Roles roles;                ///< as given, with the time and rate of the table
   Table instants{};           ///< Samples::instants
   SamplingReport sampling{};  ///< result of sampling; no sources: the log was a table of samples
-  std::string losses{};       ///< losses of a damaged bag, for the user: a line each
-  std::size_t disarmed = 0;   ///< messages left out because motors were disarmed
+  /// Losses of a damaged bag, and pulses that a table lacks (set_missing_pulses()), for the user: a
+  /// line each.
+  std::string losses{};
+  std::size_t disarmed = 0;  ///< messages left out because motors were disarmed
   /// Units of a bag's columns and of Roles::units, for display; units of a CSV are in Table::units.
   std::map<std::string, std::string> units{};
   std::optional<Draft> draft{};  ///< the draft used without configuration

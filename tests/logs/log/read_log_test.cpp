@@ -202,6 +202,36 @@ TEST_F(ReadLog, ATableWithRawColumnsIsServedAlike) {
   EXPECT_EQ(log.table.columns[2][20], 40.0);
 }
 
+// A disarmed autopilot sends no pulses; an idling engine makes 800 to 2200 turns, or none.
+TEST_F(ReadLog, APulseOfZeroIsRest) {
+  const auto text = [](const std::string& header) {
+    std::string lines = header + "\n";
+    for (int k = 0; k < 400; ++k) {
+      const bool is_armed = k >= 100;
+      const double wave = std::sin(0.05 * k);
+      lines += std::to_string(0.1 * k) + "," + std::to_string(wave) + "," +
+               std::to_string(is_armed ? std::lround(1500.0 + 300.0 * wave) : 0) + "," +
+               std::to_string(std::cos(0.05 * k)) + "\n";
+    }
+    return lines;
+  };
+  for (const std::string header : {"t,u,pwm1,udot", "t,u,motor1,x", "t,u,thruster_left [us],x"}) {
+    const log::Log log = log::read_log({.path = write("log.csv", text(header))}, {}, {});
+    EXPECT_NE(log.losses.find("0 is no pulse; it counts as rest, 1500 µs, in 100 rows"),
+              std::string::npos)
+        << log.losses;
+    const log::Dataset data = log.dataset();
+    ASSERT_EQ(data.input_names.size(), 2U);
+    EXPECT_EQ(data.input(30)[1], 1500.0) << header;
+    EXPECT_EQ(data.actuators.at(data.input_names[1]), (log::KnownActuator{.neutral = 1500.0}));
+  }
+  for (const std::string header : {"t,u,rpm1,udot", "t,u,motor_speed,udot", "t,u,n1 [rpm],udot"}) {
+    const log::Log log = log::read_log({.path = write("log.csv", text(header))}, {}, {});
+    EXPECT_EQ(log.losses, "") << header;
+    EXPECT_EQ(log.dataset().input(30)[1], 0.0) << header;
+  }
+}
+
 TEST_F(ReadLog, ColumnsOfABagAreTakenAsRecorded) {
   const log::Log log =
       log::read_columns({.path = kBag}, Names{"/cmd:linear.x"}, bag::Clock::receive);
