@@ -163,6 +163,11 @@ class FolderReader final : public MessageReader {
   void list_files(const fs::path& folder) {
     const fs::path metadata = folder / kMetadata;
     if (!is_there(metadata)) {
+      find_files(folder);
+      if (files_.empty()) {
+        refuse(metadata, "is missing; a folder is read as a rosbag2. Of tables name the files: " +
+                             (folder / "*.csv").string());
+      }
       refuse(metadata,
              "is missing; rosbag2 writes it when recording ends (`ros2 bag reindex` "
              "makes it again; --recover does without)");

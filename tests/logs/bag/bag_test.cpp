@@ -85,6 +85,9 @@ TEST(Bag, SingleFilesAreToldApartByTheirContent) {
 TEST(Bag, MetadataThatCannotBeUsedAreNamedWithTheirLine) {
   const TemporaryFolder folder;
   expect_refusal(folder.path(), "metadata.yaml: is missing");
+  const TemporaryFolder tables;
+  write_text(tables / "dive.csv", "t,u,udot\n0,1,2\n");
+  expect_refusal(tables.path(), "name the files: " + (tables / "*.csv").string());
   write_text(folder / "metadata.yaml", "a: [1\nb: 2\n");
   expect_refusal(folder.path(), "is no YAML");
   write_text(folder / "metadata.yaml", "- 1\n");
