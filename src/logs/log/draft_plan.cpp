@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -321,6 +322,7 @@ class Planner {
     const double duration_s = plan_.armed_only ? report_.autopilot.armed_s : report_.duration_s;
     plan_times(report_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, plan_);
     take_voltage();
+    take_heading();
     if (plan_.is_of_bag && (plan_.states.empty() || plan_.commands.empty())) {
       list_fields();
     }
@@ -414,6 +416,27 @@ class Planner {
       group.lines.push_back({"voltage", column.name, signal_why(column)});
     }
     plan_.states.push_back(std::move(group));
+  }
+
+  // Of a table, beside the rows: a current is found by it. Rows end with the first signal to end,
+  // so a heading that is not there in every row is none.
+  void take_heading() {
+    if (plan_.is_of_bag || plan_.targets.empty() || !plan_.pose.empty()) {
+      return;
+    }
+    const bag::TopicReport& topic = report_.topics.front();
+    Table table;
+    std::ranges::transform(topic.fields, std::back_inserter(table.names), &bag::FieldRange::path);
+    const auto field = std::ranges::find(topic.fields, find_heading(table), &bag::FieldRange::path);
+    if (field == topic.fields.end() || field->not_finite > 0) {
+      return;
+    }
+    if (const CandidateColumn column = column_of(topic, *field); column.varies()) {
+      DraftPlan::Group group{.head = "the heading, for the current: a column beside, no input",
+                             .lines = {}};
+      add_line(group, "psi", column);
+      plan_.states.push_back(std::move(group));
+    }
   }
 
   static std::string topic_of(const Candidate& one) {

@@ -322,10 +322,44 @@ std::optional<Mistake> long_gap(const Dataset& data) {
       false};
 }
 
+// Rows of a velocity that are far beyond all others, as those with a sensor's mark of no value.
+std::optional<Mistake> absurd_values(const Dataset& data, std::size_t input) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    values.push_back(data.input(row)[input]);
+  }
+  std::vector<double> sorted = values;
+  const double middle = quantile(sorted, 0.5);
+  std::vector<double> distances = values;
+  std::ranges::for_each(distances, [&](double& value) { value = std::abs(value - middle); });
+  const double usual = quantile(distances, 1.0 - kLimits.most_absurd);
+  const auto is_absurd = [&](double value) {
+    return std::abs(value - middle) > kLimits.absurd * usual;
+  };
+  const auto count = std::ranges::count_if(values, is_absurd);
+  if (count == 0 || !(usual > 0.0)) {
+    return std::nullopt;
+  }
+  const double worst =
+      *std::ranges::max_element(values, {}, [&](double value) { return std::abs(value - middle); });
+  return Mistake{fmt::format("{}: {} at {:g}, {:.0f} times as far from the median as all others",
+                             data.input_names[input],
+                             count == 1 ? "1 row" : fmt::format("{} rows, the farthest", count),
+                             worst, std::abs(worst - middle) / usual),
+                 "a sensor's mark of no value? Leave such cells empty", false};
+}
+
 }  // namespace
 
 std::vector<Mistake> clock_mistakes(const Dataset& data) {
   std::vector<Mistake> found;
+  for (std::size_t input = 0; input < data.input_names.size() && data.rows() > 0; ++input) {
+    if (velocity_axis(data.input_names[input])) {
+      if (const auto mistake = absurd_values(data, input)) {
+        found.push_back(*mistake);
+      }
+    }
+  }
   for (const auto& mistake : {repeated_stamps(data), long_gap(data)}) {
     if (mistake) {
       found.push_back(*mistake);

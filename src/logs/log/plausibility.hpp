@@ -43,7 +43,8 @@ std::string mistake_text(const Mistake& mistake);
 std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states);
 
 /// Mistakes of the clock: stamps equal to the stamp before (refused where more than 30 % are),
-/// ten minutes without a row, more than 200 rows per second. Cost O(rows). Allocates.
+/// ten minutes without a row, more than 200 rows per second; and velocities of which a few rows are
+/// ten times as far out as all others. Cost O(rows). Allocates.
 std::vector<Mistake> clock_mistakes(const Dataset& data);
 
 }  // namespace kelpie::log

@@ -14,6 +14,7 @@
 #include "core/seconds.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
+#include "log/draft_plan.hpp"
 #include "log/held_table.hpp"
 #include "log/pose_config.hpp"
 #include "log/pose_instants.hpp"
@@ -235,22 +236,18 @@ void add_neutral_pulses(const Table& table, Roles& roles) {
   }
 }
 
-// What the user says of units of the table's columns, in the table as if its header said so: a
-// draft goes by it. Returns the other units, of columns that the rows will have.
-std::map<std::string, std::string> tell_units(const std::map<std::string, std::string>& units,
-                                              Table& table) {
-  std::map<std::string, std::string> others;
+// The table's units as a draft is to see them where the user says others: stamps have theirs, and
+// what else --units converts, on top of any draft, has none.
+void tell_units(const Roles& roles, Table& table) {
+  const std::string time = roles.time.empty() ? time_field(table) : roles.time;
   table.units.resize(table.names.size());
-  for (const auto& [name, text] : units) {
+  for (const auto& [name, text] : roles.units) {
     const auto found = std::ranges::find(table.names, name);
-    if (found == table.names.end()) {
-      others.emplace(name, text);
-      continue;
+    if (found != table.names.end()) {
+      table.units[static_cast<std::size_t>(found - table.names.begin())] =
+          name == time ? text : std::string();
     }
-    si_unit(table.source, name, text);
-    table.units[static_cast<std::size_t>(found - table.names.begin())] = text;
   }
-  return others;
 }
 
 // Whether the samples of a draft have all these columns.
@@ -416,9 +413,8 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
   if (!is_of_bag && can_be_taken(table, roles, why_not)) {
     return taken_log(std::move(table), roles);
   }
-  Roles wanted = roles;
   if (!is_of_bag) {
-    wanted.units = tell_units(roles.units, table);
+    tell_units(roles, table);
   }
   Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles.time);
   if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
@@ -429,7 +425,7 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
     refuse(source.path, {}, draft.unclear(source.path, lacks_targets ? why_not : ""));
   }
   const LogConfig drafted = draft.config(source.path);
-  Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(wanted, drafted.roles));
+  Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(roles, drafted.roles));
   log.draft = std::move(draft);
   return log;
 }

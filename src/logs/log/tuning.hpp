@@ -44,6 +44,8 @@ inline constexpr struct Tuning {
     double longest_gap_s = 600.0;  ///< without a word; by hand
     double gap_rows = 100.0;    ///< of usual steps in a gap, too: slow logs have no gaps; by hand
     double fastest_hz = 200.0;  ///< of rows, without a word; by hand
+    double most_absurd = 2e-3;  ///< share of rows with values far beyond all others: by hand
+    double absurd = 10.0;       ///< of the largest distance of all others: by hand
   } plausibility;
 
   /// The window of a pose (find_pose_window()).

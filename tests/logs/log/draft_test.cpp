@@ -114,6 +114,17 @@ TEST(Draft, TellsWhichColumnsOfATableAreNotUsed) {
             "u,r,n_port,az_port,helm");
 }
 
+TEST(Draft, TakesTheHeadingOfATableForTheCurrentAndNotAsAnInput) {
+  log::Table table = table_of("t,u,v,r,n1,heading_deg");
+  const log::LogConfig config = log::draft_of(table).config("log.csv");
+  EXPECT_EQ(config.plan.sources[config.plan.source("psi")].from, "heading_deg");
+  EXPECT_EQ(join_text(config.roles.inputs, ","), "u,v,r,n1");
+  table.columns[5].back() = std::nan("");  // rows end with the first signal to end
+  const log::Draft without = log::draft_of(table);
+  EXPECT_EQ(without.toml.find("psi"), std::string::npos) << without.toml;
+  EXPECT_EQ(without.taken.back(), "not used: heading_deg");
+}
+
 TEST(Draft, EveryUnitOfMotionBecomesOneOfTheSi) {
   log::Table table = table_of("t,u,v,r,n1,rudder");
   table.units = {"s", "kts", "m/sec", "deg/sec", "RPM", "degrees"};

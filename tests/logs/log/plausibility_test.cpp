@@ -208,5 +208,23 @@ TEST(Plausibility, TellsOfAGapAndOfAHighRate) {
   EXPECT_EQ(text_of(log::clock_mistakes(data)).substr(0, 25), "2000 rows per second are ");
 }
 
+TEST(Plausibility, NamesAFewValuesFarBeyondAllOthers) {
+  log::Dataset data = drive();
+  ASSERT_TRUE(log::clock_mistakes(data).empty());
+  double usual = 0.0;
+  for (std::size_t row = 0; row < kRows; ++row) {
+    usual = std::max(usual, std::abs(data.inputs[3 * row]));
+  }
+  data.inputs[3 * 700] = -8.0 * usual;
+  EXPECT_TRUE(log::clock_mistakes(data).empty()) << "a rare manoeuvre";
+  data.inputs[3 * 700] = -100.0 * usual;
+  data.inputs[3 * 900] = -100.0 * usual;
+  const std::vector<log::Mistake> found = log::clock_mistakes(data);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().what.substr(0, 25), "u: 2 rows, the farthest a");
+  EXPECT_EQ(log::clock_mistakes(with_input(0, 100.0)).size(), 0U) << "all of them are";
+  EXPECT_FALSE(found.front().is_refused);
+}
+
 }  // namespace
 }  // namespace kelpie::plausibility_test

@@ -177,9 +177,19 @@ TEST_F(ReadLog, UnitsThatTheUserGivesAreKnownToTheDraft) {
     const std::vector<double>& u = log.table.columns[log.table.find("u")];
     EXPECT_NEAR(u[row], std::sin(2.0) * 1852.0 / 3600.0, 1e-4);
   }
-  // A unit of the header, said again, is no second unit.
-  const std::string twice = write("log.csv", text("t [ms]"));
-  EXPECT_EQ(log::read_log({.path = twice}, {}, {.units = {{"t", "ms"}}}).sampling.rate_hz, 25.0);
+  // Of a unit that the header has, too, there are not two conversions, nor in the second of two
+  // logs.
+  std::string both = text("t [ms]");
+  both.replace(0, both.find('\n'), "t [ms],u [knots],n1");
+  const std::string twice = write("log.csv", both);
+  const log::Roles roles{.units = {{"t", "ms"}, {"u", "knots"}}};
+  const log::Log first = log::read_log({.path = twice}, {}, roles);
+  const log::Log second = log::read_log({.path = twice}, first.draft->config(twice), roles);
+  for (const log::Log* const log : {&first, &second}) {
+    EXPECT_EQ(log->sampling.rate_hz, 25.0);
+    const std::vector<double>& u = log->table.columns[log->table.find("u")];
+    EXPECT_NEAR(std::ranges::max(u), 1852.0 / 3600.0, 1e-3);
+  }
   EXPECT_NE(testing::message_of<InputError>([&] {
               log::read_log({.path = twice}, {}, {.units = {{"t", "m/s2"}}});
             }).find("is not a unit"),
