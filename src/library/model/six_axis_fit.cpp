@@ -103,6 +103,12 @@ class Search {
     return sum;
   }
 
+  bool explains() const {
+    return std::isfinite(misfit_of(best_, errors_)) &&
+           unexplained_share(free_, best_) <= kIdentification.most_unexplained;
+  }
+  bool found() const { return explains() && best_.converged; }
+
   const SixAxisWindows& windows() const { return windows_; }
   const WeakRows& weak() const { return weak_; }
   const FreeFit& free() const { return free_; }
@@ -320,6 +326,37 @@ void require_inertias(const SixAxisFit& fit) {
   }
 }
 
+// Thrusters that ran, and would have to push backwards.
+std::string thrusters_at_rest(const Search& search, const SixAxisFit& fit) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < fit.thrusters.size(); ++i) {
+    const std::size_t place = SixAxisPlace::thruster(i);
+    const bool ran =
+        std::ranges::find(search.best().free, place_of(place)) != search.best().free.end();
+    if (ran && fit.parameters[place].value == 0.0 && fit.parameters[place + 1].value == 0.0) {
+      names.push_back(fit.thrusters[i].name);
+    }
+  }
+  return names.empty() ? "" : " (no thrust of " + join_text(names, ", ") + ")";
+}
+
+// The parameters of the search, where they are those of a vehicle.
+SixAxisFit checked(const Search& search) {
+  constexpr const char* kCheck =
+      "; check places and directions of the thrusters, and signs and units of commands, velocities "
+      "and angles";
+  SixAxisFit fit = search.collected();
+  const std::string at_rest = thrusters_at_rest(search, fit);
+  if (!search.explains()) {
+    throw InputError("no vehicle with these thrusters explains the log" + at_rest + kCheck);
+  }
+  require_inertias(fit);
+  if (!search.found()) {
+    throw InputError("the fit settles on no vehicle with these thrusters" + at_rest + kCheck);
+  }
+  return fit;
+}
+
 SixVector as_array(const Eigen::VectorXd& values) {
   SixVector array{};
   std::copy_n(values.data(), kSixAxes, array.begin());
@@ -336,16 +373,22 @@ Eigen::VectorXd terms_at(const MotionTerms& terms, std::span<const double, kSixA
   return values;
 }
 
-// The search of the window with the least errors.
+// The search of the window with the least errors, of those that found a vehicle, if any.
 Search best_search(const SixAxisRows& rows, const SixAxisSettings& options) {
   std::optional<Search> best;
   double least = std::numeric_limits<double>::infinity();
   SixAxisSettings from = options;
   for (const double half_s : kIdentification.half_windows_s) {
     Search search(rows, from, half_s);
-    if (search.run() && search.log_errors() < least) {
+    if (!search.run()) {
+      continue;
+    }
+    const bool is_first = !best || (search.found() && !best->found());
+    if (is_first || (search.found() == best->found() && search.log_errors() < least)) {
       least = search.log_errors();
-      from.start = search.windows().curve;  // near the next one's
+      if (search.found()) {
+        from.start = search.windows().curve;  // near the next one's
+      }
       best.emplace(std::move(search));
     }
   }
@@ -435,16 +478,13 @@ SixVector SixAxisFit::free_acceleration(std::span<const double, kSixAxes> veloci
 }
 
 SixAxisFit fit_six_axes(const SixAxisRows& rows, const SixAxisSettings& options) {
-  SixAxisFit fit = best_search(rows, options).collected();
-  require_inertias(fit);
-  return fit;
+  return checked(best_search(rows, options));
 }
 
 ExpectedSixAxisFit::ExpectedSixAxisFit(const SixAxisRows& rows, const SixAxisSettings& options)
     : structure_(rows.thrusters) {
   const Search search = best_search(rows, options);
-  now_ = search.collected();
-  require_inertias(now_);
+  now_ = checked(search);
   misfit_ = now_.misfit;
   windows_ = search.windows();
   parameters_ = search.best().parameters;

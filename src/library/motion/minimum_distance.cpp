@@ -14,7 +14,10 @@
 namespace kelpie {
 namespace {
 
-constexpr int kMostSteps = 25;
+constexpr int kMostSteps = 50;
+constexpr int kFullSteps = 25;  // then half of each, which ends an alternation
+constexpr int kMostHalvings = 8;
+constexpr double kMostGrowth = 3.0;  // of the distance over the least so far
 constexpr double kConverged = 1e-9;
 constexpr double kParameterRidge =
     1e-12;  // so that what the log doesn't tell has a finite, huge error
@@ -57,11 +60,51 @@ Eigen::MatrixXd distance_metric(const FreeFit& fit, const Eigen::MatrixXd& mass)
   return metric;
 }
 
+ConeProgram bounds_of(const EquationStructure& structure, const std::vector<Eigen::Index>& free) {
+  ConeProgram program{.signs = places_in(free, structure.positive), .least = structure.least};
+  if (structure.block) {
+    const std::vector<Eigen::Index> block = places_in(free, *structure.block);
+    program.block = {block[0], block[1], block[2]};
+  }
+  return program;
+}
+
+void set_bounds(const ConeSolution& solution, MinimumDistance& best) {
+  best.at_bound.assign(static_cast<std::size_t>(best.parameters.size()), false);
+  for (std::size_t i = 0; i < best.free.size(); ++i) {
+    best.at_bound[static_cast<std::size_t>(best.free[i])] = solution.at_bound[i];
+  }
+  best.indefinite = solution.block_at_bound;
+}
+
+// R'WR, and half its gradient and curvature by the free parameters with W held.
+struct LocalDistance {
+  double value = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+};
+
+LocalDistance distance_at(const FreeFit& fit, const EquationStructure& structure,
+                          const MinimumDistance& best) {
+  const Eigen::MatrixXd metric = distance_metric(fit, structure.mass(best.parameters));
+  const StructureResidual residual = structure.residual(fit.coefficients, best.parameters);
+  const Eigen::MatrixXd jacobian = residual.jacobian(Eigen::all, best.free);
+  const Eigen::MatrixXd weighted = metric * jacobian;
+  return {residual.value.dot(metric * residual.value), weighted.transpose() * residual.value,
+          with_ridge(jacobian.transpose() * weighted)};
+}
+
 }  // namespace
 
 double misfit_of(const MinimumDistance& best, const SandwichErrors& errors) {
   return std::max(
       1.0, best.distance / std::max(errors.expected_distance, std::numeric_limits<double>::min()));
+}
+
+double unexplained_share(const FreeFit& fit, const MinimumDistance& best) {
+  const Eigen::MatrixXd sizes =
+      fit.coefficients.transpose() * fit.gram * fit.coefficients * equilibrated_inverse(fit.noise);
+  return best.distance / std::max(sizes.trace(), std::numeric_limits<double>::min());
 }
 
 FreeFit without_thrusters(const FreeFit& fit) {
@@ -76,37 +119,54 @@ FreeFit without_thrusters(const FreeFit& fit) {
   return vehicle;
 }
 
+// With W held, a step is a convex program (three-stage least squares). But W follows M, and M, Θ →
+// 0 with all thrust unexplained is a fixed point, too. R'WR with the W of each M tells: it is the
+// distance of the free coefficients from M⁻¹Θ, which no factor of M and Θ lowers. So a step is
+// halved until the distance is near the least so far (backtracking: Nocedal & Wright 2006, ch. 3):
+// near, for the fixed point wanted is not the minimum of the distance.
 MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& structure,
                                   MinimumDistance start) {
   MinimumDistance best = std::move(start);
-  ConeProgram program{.signs = places_in(best.free, structure.positive), .least = structure.least};
-  if (structure.block) {
-    const std::vector<Eigen::Index> block = places_in(best.free, *structure.block);
-    program.block = {block[0], block[1], block[2]};
-  }
+  ConeProgram program = bounds_of(structure, best.free);
+  LocalDistance at = distance_at(fit, structure, best);
+  best.converged = false;
+  best.distance = at.value;
+  set_bounds({.x = {}, .at_bound = std::vector<bool>(best.free.size(), false)}, best);
+  MinimumDistance nearest = best;
   for (int step = 0; step < kMostSteps; ++step) {
-    const Eigen::MatrixXd metric = distance_metric(fit, structure.mass(best.parameters));
-    const StructureResidual residual = structure.residual(fit.coefficients, best.parameters);
-    const Eigen::MatrixXd jacobian = residual.jacobian(Eigen::all, best.free);
-    const Eigen::MatrixXd weighted = metric * jacobian;
-    best.hessian = with_ridge(jacobian.transpose() * weighted);
     const Eigen::VectorXd now = chosen(best.parameters, best.free);
-    program.hessian = best.hessian;
-    program.gradient = best.hessian * now - weighted.transpose() * residual.value;
+    best.hessian = at.hessian;
+    best.distance = at.value;
+    program.hessian = at.hessian;
+    program.gradient = at.hessian * now - at.gradient;
     const ConeSolution next = solve(program);
-    best.parameters(best.free) = next.x;
-    best.at_bound.assign(static_cast<std::size_t>(best.parameters.size()), false);
-    for (std::size_t i = 0; i < best.free.size(); ++i) {
-      best.at_bound[static_cast<std::size_t>(best.free[i])] = next.at_bound[i];
+    set_bounds(next, best);
+    const Eigen::VectorXd scale = at.hessian.diagonal().cwiseSqrt();
+    best.converged =
+        scale.cwiseProduct(next.x - now).norm() <= kConverged * scale.cwiseProduct(next.x).norm();
+    if (best.converged) {
+      best.parameters(best.free) = next.x;
+      return best;
     }
-    best.indefinite = next.block_at_bound;
-    best.distance = residual.value.dot(metric * residual.value);
-    const Eigen::VectorXd scale = best.hessian.diagonal().cwiseSqrt();
-    if (scale.cwiseProduct(next.x - now).norm() <= kConverged * scale.cwiseProduct(next.x).norm()) {
+    const double most = kMostGrowth * nearest.distance;
+    double share = step < kFullSteps ? 1.0 : 0.5;
+    for (int halved = 0; halved <= kMostHalvings; ++halved, share *= 0.5) {
+      best.parameters(best.free) = now + share * (next.x - now);
+      at = distance_at(fit, structure, best);
+      if (at.value >= 0.0 && at.value <= most) {
+        break;
+      }
+    }
+    if (!(at.value >= 0.0 && at.value <= most)) {
       break;
     }
+    if (at.value < nearest.distance) {
+      nearest = best;
+      nearest.distance = at.value;
+    }
   }
-  return best;
+  nearest.hessian = distance_at(fit, structure, nearest).hessian;
+  return nearest;
 }
 
 Eigen::MatrixXd distance_hessian(const FreeFit& fit, const EquationStructure& structure,

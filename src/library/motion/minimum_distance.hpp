@@ -33,9 +33,11 @@ struct MinimumDistance {
   bool indefinite = false;           ///< the block of M is at its bound
   Eigen::MatrixXd hessian{};         ///< of the distance by the free parameters
   double distance = 0.0;             ///< R'WR at the minimum, W = G ⊗ (M S Mᵀ)⁻¹
+  bool converged = false;            ///< M and the metric are those of each other
 };
 
-/// Iterates from `start.parameters` until M and the metric converge.
+/// Iterates from `start.parameters` until M and the metric converge; otherwise the nearest on the
+/// way.
 MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& structure,
                                   MinimumDistance start);
 
@@ -60,6 +62,9 @@ SandwichErrors sandwich(const FreeFit& fit, const EquationStructure& structure,
 
 /// The distance over its expectation, at least 1.
 double misfit_of(const MinimumDistance& best, const SandwichErrors& errors);
+
+/// The distance over that of no forces at all: 1 where the structure explains nothing.
+double unexplained_share(const FreeFit& fit, const MinimumDistance& best);
 
 /// The fit in the plane for masses, drags and constant forces alone, with free coefficients of the
 /// thrusters: convex for a given metric, 13 parameters.

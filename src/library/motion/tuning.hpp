@@ -93,7 +93,8 @@ inline constexpr struct IdentificationTuning {
   /// the plane: chosen on the simulated Dagon (docs/howto/identify.md, "How", 4).
   double plane_allowance = 0.003;
   double angle_allowance_rad = 0.001;
-  double most_blur = 0.3;  ///< error of a parameter's effect over the forces of its axis
+  double most_unexplained = 0.5;  ///< [share] of the distance from no forces, on six axes
+  double most_blur = 0.3;         ///< error of a parameter's effect over the forces of its axis
 
   // Six axes (docs/howto/identify.md, "Six axes").
   std::array<double, 5> half_windows_s{0.5, 0.25, 1.0, 2.0, 4.0};  ///< [s] tried

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/drive_plan.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -23,7 +25,8 @@
 namespace kelpie::study {
 namespace {
 
-constexpr const char* kLoad = "load";  // a change of all inertias
+constexpr double kWrongVehicle = 100.0;  // misfit
+constexpr const char* kLoad = "load";    // a change of all inertias
 
 // What a parameter is, by its name.
 enum class ParameterKind : std::uint8_t {
@@ -454,8 +457,13 @@ DrivePlan plan_drive(const DrivableVehicle& vehicle, const DriveBounds& bounds,
     plan.countdown.push_back({t_s, best.manoeuvre->name, now.numbers});
   }
   plan.reached = now.reached;
+  const double misfit = vehicle.expected().now().misfit;
   require(plan.reached || !plan.manoeuvres.empty(), "bounds",
-          "leave room for no manoeuvre: give more time, speed or space");
+          misfit > kWrongVehicle
+              ? fmt::format("leave room for no manoeuvre of the vehicle found in the log, which is "
+                            "probably wrong (misfit {:.0f}; 1: chance): kelpie identify tells more",
+                            misfit)
+              : "leave room for no manoeuvre: give more time, speed or space");
   plan.track = record.track();
   plan.extent = possible.extent();
   return plan;
