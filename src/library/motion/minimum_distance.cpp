@@ -18,7 +18,9 @@ constexpr int kMostSteps = 50;
 constexpr int kFullSteps = 25;  // then half of each, which ends an alternation
 constexpr int kMostHalvings = 8;
 constexpr double kMostGrowth = 3.0;  // of the distance over the least so far
+constexpr double kSmall = 1e-6;      // of the distance of no forces: less may grow
 constexpr double kConverged = 1e-9;
+constexpr double kNearlyConverged = 1e-6;  // after the last step
 constexpr double kParameterRidge =
     1e-12;  // so that what the log doesn't tell has a finite, huge error
 
@@ -94,6 +96,13 @@ LocalDistance distance_at(const FreeFit& fit, const EquationStructure& structure
           with_ridge(jacobian.transpose() * weighted)};
 }
 
+// R'WR of Θ = 0, whatever M.
+double distance_of_none(const FreeFit& fit) {
+  const Eigen::MatrixXd squares = fit.coefficients.transpose() * fit.gram * fit.coefficients;
+  return std::max((squares * equilibrated_inverse(fit.noise)).trace(),
+                  std::numeric_limits<double>::min());
+}
+
 }  // namespace
 
 double misfit_of(const MinimumDistance& best, const SandwichErrors& errors) {
@@ -102,9 +111,7 @@ double misfit_of(const MinimumDistance& best, const SandwichErrors& errors) {
 }
 
 double unexplained_share(const FreeFit& fit, const MinimumDistance& best) {
-  const Eigen::MatrixXd sizes =
-      fit.coefficients.transpose() * fit.gram * fit.coefficients * equilibrated_inverse(fit.noise);
-  return best.distance / std::max(sizes.trace(), std::numeric_limits<double>::min());
+  return best.distance / distance_of_none(fit);
 }
 
 FreeFit without_thrusters(const FreeFit& fit) {
@@ -142,13 +149,14 @@ MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& s
     const ConeSolution next = solve(program);
     set_bounds(next, best);
     const Eigen::VectorXd scale = at.hessian.diagonal().cwiseSqrt();
-    best.converged =
-        scale.cwiseProduct(next.x - now).norm() <= kConverged * scale.cwiseProduct(next.x).norm();
-    if (best.converged) {
+    const double moved = scale.cwiseProduct(next.x - now).norm();
+    const double size = scale.cwiseProduct(next.x).norm();
+    best.converged = moved <= kNearlyConverged * size;
+    if (moved <= kConverged * size) {
       best.parameters(best.free) = next.x;
       return best;
     }
-    const double most = kMostGrowth * nearest.distance;
+    const double most = kMostGrowth * std::max(nearest.distance, kSmall * distance_of_none(fit));
     double share = step < kFullSteps ? 1.0 : 0.5;
     for (int halved = 0; halved <= kMostHalvings; ++halved, share *= 0.5) {
       best.parameters(best.free) = now + share * (next.x - now);
@@ -165,6 +173,10 @@ MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& s
       nearest.distance = at.value;
     }
   }
+  if (best.converged) {
+    return best;
+  }
+  nearest.converged = false;
   nearest.hessian = distance_at(fit, structure, nearest).hessian;
   return nearest;
 }
