@@ -42,7 +42,7 @@ constexpr std::array<std::string_view, 3> kAngleEndings{"", "_deg", "_rad"};
 // Words before the axis of an acceleration, and whole names.
 constexpr std::array<std::string_view, 3> kAccelerationWords{"acc", "accel", "acceleration"};
 constexpr std::array<std::string_view, 6> kAccelerations{"ax", "ay", "az", "accx", "accy", "accz"};
-constexpr std::array<std::string_view, 3> kMeasured{"power", "power_w", "sog"};
+constexpr std::array<std::string_view, 2> kMeasured{"power_w", "sog"};
 constexpr std::array<std::string_view, 5> kMeasuredWords{"imu", "temp", "sats", "nsats",
                                                          "satellites"};
 constexpr std::array<std::string_view, 4> kBatteryWords{"battery", "batt", "soc", "vbat"};
