@@ -149,7 +149,7 @@ struct DynamicsModel::Parts {
 
   void order_axes();
   bool trusts_sample() const;
-  void restart_where_moved(std::span<const double> x);
+  void begin_with_the_moves(std::span<const double> x, std::span<const double> y);
   void monitor_change(std::span<const double> x, std::span<const double> y, double t);
   void believe_diagnosis();
   void apply_change(ChangeMonitor::Event event);
@@ -179,7 +179,7 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
       target_names(std::move(targets)),
       settings(std::move(model_settings)),
       state(target_names.size()),
-      moves(commands_of(input_names, settings, target_names.size())) {
+      moves(commands_of(input_names, settings, target_names.size()), target_names.size()) {
   require_complete(input_names, target_names, settings);
   const std::size_t dimension = input_names.size();
   work = WorkLimit(settings.axes.size(), most_places(settings));
@@ -239,8 +239,9 @@ bool DynamicsModel::Parts::trusts_sample() const {
 
 // Nothing that was compared at rest is of the vehicle that sets off: not the usual errors, and not
 // the number of rows.
-void DynamicsModel::Parts::restart_where_moved(std::span<const double> x) {
-  if (!trusts_sample() || !moves.update(x)) {
+void DynamicsModel::Parts::begin_with_the_moves(std::span<const double> x,
+                                                std::span<const double> y) {
+  if (!trusts_sample() || !moves.update(x, y, state.decisions)) {
     return;
   }
   if (change) {
@@ -411,7 +412,7 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
     }
   }
   state.share_changes([&](std::size_t i) -> OnlineRegressor& { return model.axes[i]; });
-  model.restart_where_moved(x);
+  model.begin_with_the_moves(x, y);
   model.monitor_change(x, y, now);
   model.work.learned(state.crowded_out());
   for (GuardedAxis& axis : model.axes) {

@@ -159,8 +159,9 @@ TEST(Journal, APipeIsRefusedWithoutWaitingForAWriter) {
   const TemporaryFolder folder;
   const auto file = folder / "journal.jsonl";
   ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
-  EXPECT_NE(message_of([&] { jobs::JournalReader(file, kKind, kHeader); }).find("cannot be read"),
-            std::string::npos);
+  const std::string message =
+      message_of<InputError>([&] { const jobs::JournalReader reader(file, kKind, kHeader); });
+  EXPECT_NE(message.find("cannot be read"), std::string::npos) << message;
 }
 
 // A killed run leaves the journals of its ranks.
