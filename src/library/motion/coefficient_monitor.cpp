@@ -55,7 +55,8 @@ void CoefficientMonitor::restart() {
   health_.clear();
 }
 
-void CoefficientMonitor::insert(const NormalEquations& block, double start_s, double end_s) {
+void CoefficientMonitor::insert(const NormalEquations& block, double start_s, double end_s,
+                                double since_s) {
   // Of a block without a gap: a pause lowers the rate of one block alone.
   rate_hz_ = std::max(kDiagnosis.rate_kept * rate_hz_, (block.rows() - 1.0) / (end_s - start_s));
   if (kept_ == kBlocks) {
@@ -63,7 +64,7 @@ void CoefficientMonitor::insert(const NormalEquations& block, double start_s, do
   }
   const std::size_t place = (first_ + kept_) % kBlocks;
   blocks_[place] = block;
-  starts_[place] = start_s;
+  starts_[place] = since_s;
   ++kept_;
   window_ = ready() ? 0 : kWindows.size();
 }

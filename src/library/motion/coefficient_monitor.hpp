@@ -36,8 +36,9 @@ class CoefficientMonitor {
   void restart();  ///< Discards all rows, and what is usual.
 
   /// Stores the newest block, with its first and last rows at these times [s], and starts over with
-  /// the shortest window. Requires two rows or more, and start_s < end_s.
-  void insert(const NormalEquations& block, double start_s, double end_s);
+  /// the shortest window. A change in this block is told since `since_s`. Requires two rows or
+  /// more, and start_s < end_s.
+  void insert(const NormalEquations& block, double start_s, double end_s, double since_s);
   /// Tests one window, the shortest first. Returns true when all windows are tested and an alarm is
   /// raised; the next call has to be cut() or insert(). Cost: O(terms³).
   bool step();
@@ -55,8 +56,6 @@ class CoefficientMonitor {
   /// Scatter of a minute of the unchanged vehicle over the scatter of independent noise; >= 1.
   double usual_scatter() const;
 
-  /// The coefficients of the reference, with all its rows.
-  void fit_reference(ReferenceFit& fit) const { fit.fit(reference_); }
   const NormalEquations& reference() const { return reference_; }
   std::size_t watched() const { return watched_; }  ///< Number of fits to the reference so far.
 
@@ -86,7 +85,7 @@ class CoefficientMonitor {
   Comparison comparison_;
   NormalEquations reference_, window_sums_;
   std::vector<NormalEquations> blocks_;  // the oldest at first_
-  std::vector<double> starts_;           // times of their first rows
+  std::vector<double> starts_;           // since when a change in them is told
   std::size_t first_ = 0, kept_ = 0;
   double rate_hz_ = 0.0;       // the highest of a block's rows, fading
   std::size_t window_;         // next to be tested

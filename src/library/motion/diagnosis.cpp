@@ -12,6 +12,7 @@
 #include "core/normal_equations.hpp"
 #include "core/quantile.hpp"
 #include "core/roomy_vector.hpp"
+#include "core/seconds.hpp"
 #include "kelpie/core/scaling.hpp"
 #include "motion/cause_ranking.hpp"
 #include "motion/coefficient_monitor.hpp"
@@ -76,6 +77,7 @@ class Diagnosis::State {
  private:
   bool moves(std::span<const double> x, double t);
   bool is_outlier(std::span<const double> y);
+  bool is_gap(double step_s) const;
   void close_block(double t);
   void start_finding(double t);
   std::span<const double> theta_now() const;
@@ -94,6 +96,8 @@ class Diagnosis::State {
   NormalEquations block_;
   NormalEquations after_;  // rows since the change under inspection
   double block_start_ = 0.0;
+  double since_ = 0.0;         // the block's first row after its last gap
+  double row_s_ = 0.0;         // the last row
   bool looking_ = false;       // the last finding is under inspection
   std::size_t guard_ = 0;      // number of blocks still to be skipped
   std::size_t inspected_ = 0;  // number of blocks in after_
@@ -141,8 +145,11 @@ void Diagnosis::State::update(std::span<const double> x, std::span<const double>
     block_.clear();
   }
   if (block_.rows() == 0.0) {
-    block_start_ = t;
+    block_start_ = since_ = t;
+  } else if (is_gap(t - row_s_)) {
+    since_ = t;  // what changed within the block changed in the gap
   }
+  row_s_ = t;
   block_.add(phi_, y);
   if (!looking_ && monitor_.step()) {
     start_finding(t);
@@ -151,6 +158,11 @@ void Diagnosis::State::update(std::span<const double> x, std::span<const double>
     close_block(t);
     block_.clear();
   }
+}
+
+bool Diagnosis::State::is_gap(double step_s) const {
+  const double steps = std::max(1.0, block_.rows() - 1.0);
+  return step_s > kDiagnosis.block_s && step_s > kLongestStep * (row_s_ - block_start_) / steps;
 }
 
 void Diagnosis::State::restart() {
@@ -228,7 +240,7 @@ void Diagnosis::State::close_block(double t) {
     ++inspected_;
     inspect(t);
   } else {
-    monitor_.insert(block_, block_start_, t);
+    monitor_.insert(block_, block_start_, t, since_);
   }
 }
 
@@ -353,7 +365,7 @@ void Diagnosis::State::accept(std::span<const double> delta, double kept) {
   monitor_.accept_change(delta, kept, after_);
   shares_.dead_thrust(monitor_.terms(), delta_);
   monitor_.expect_thrust(delta_);
-  monitor_.fit_reference(accepted_);
+  accepted_.fit(monitor_.reference());
   accepted_at_ = monitor_.watched();
 }
 
@@ -420,7 +432,9 @@ void Diagnosis::State::visit(Archive& archive) {
   archive.part("standstill", standstill_);
   archive.part("block", block_);
   archive.part("after", after_);
-  archive.number(block_start_);
+  for (double* const number : {&block_start_, &since_, &row_s_}) {
+    archive.number(*number);
+  }
   archive.flag(looking_);
   archive.whole(guard_, 0, kDiagnosis.guard_blocks);
   archive.whole(inspected_);

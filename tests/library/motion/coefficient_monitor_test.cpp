@@ -26,7 +26,7 @@ class Blocks {
         last_s = t_;
         t_ += 1.0 / rate_hz;
       }
-      monitor.insert(block, start_s, last_s);
+      monitor.insert(block, start_s, last_s, start_s);
       while (monitor.step()) {
       }
     }

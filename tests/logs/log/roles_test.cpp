@@ -72,8 +72,8 @@ TEST(Roles, ADerivativeIsNoInputWhereTheUnitOfItsColumnIsUnknown) {
 TEST(Roles, WhatSensorsMeasureIsNoCommand) {
   const std::string measured =
       "ax,ay,az,accx,acc_y,AccelZ,imu_1,temp,temp_c,temperature2,water_temperature,sog,cog,n_sats,"
-      "sats,power,power_w,lat,longitude";
-  const std::string commands = "a1,az1,accumulator,acc,motor_power,n1,n_port,template";
+      "sats,power_w,lat,longitude";
+  const std::string commands = "a1,az1,accumulator,acc,power,motor_power,n1,n_port,template";
   EXPECT_EQ(guess("t,u," + measured + "," + commands + ",udot").inputs,
             split_text("u," + commands, ','));
   const log::Table table = with_columns("t,u,ax,n,udot");

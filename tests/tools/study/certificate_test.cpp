@@ -88,7 +88,7 @@ TEST_F(CertificateOfTheHeavy, ThePluginsAddedMassIsToBlame) {
   EXPECT_FALSE(plugin.limit.stable);
   EXPECT_FALSE(plugin.limit.largest_s.has_value());
   EXPECT_EQ(plugin.limit.term, vehicle::EngineTerm::added_mass);
-  EXPECT_STREQ(vehicle::axis_text(plugin.limit.axis), "heave");
+  EXPECT_EQ(vehicle::axis_text(plugin.limit.axis), "heave");
   EXPECT_LT(plugin.horizons[1].r2[2], 0.0);
   EXPECT_TRUE(of("uuv_simulator").limit.stable) << "the filter moves the bound to 5.7 masses";
 }
