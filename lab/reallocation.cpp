@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "vehicle/parameters.hpp"
 
@@ -24,7 +25,7 @@ Eigen::Vector3d Reallocation::look(const Diagnosis* diagnosis, const Eigen::Vect
     const double most = nominal_.most_rps(static_cast<Eigen::Index>(i));
     ranges.push_back({3 + i, -most, most});
   }
-  Authority authority(*diagnosis, std::move(ranges));
+  Authority authority(*diagnosis, ranges);
   const Eigen::Vector3d before = forces(rotors_rps);
   bool damaged = false;
   for (std::size_t i = 0; i < 3; ++i) {

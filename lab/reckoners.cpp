@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kelpie/model/open_loop.hpp"
+#include "kelpie/model/trained_model.hpp"
 #include "kelpie/navigation/dead_reckoning.hpp"
 
 namespace kelpie::lab {

@@ -158,14 +158,13 @@ MinimumDistance minimise_distance(const FreeFit& fit, const EquationStructure& s
     }
     const double most = kMostGrowth * std::max(nearest.distance, kSmall * distance_of_none(fit));
     double share = step < kFullSteps ? 1.0 : 0.5;
-    for (int halved = 0; halved <= kMostHalvings; ++halved, share *= 0.5) {
+    bool is_near = false;
+    for (int halved = 0; halved <= kMostHalvings && !is_near; ++halved, share *= 0.5) {
       best.parameters(best.free) = now + share * (next.x - now);
       at = distance_at(fit, structure, best);
-      if (at.value >= 0.0 && at.value <= most) {
-        break;
-      }
+      is_near = at.value >= 0.0 && at.value <= most;
     }
-    if (!(at.value >= 0.0 && at.value <= most)) {
+    if (!is_near) {
       break;
     }
     if (at.value < nearest.distance) {
