@@ -292,19 +292,21 @@ void LiveLearner::save() {
     error = failure.what();
   }
   saved_t_s_ = last_t_s_;
+  {
+    const std::lock_guard lock(mutex_);
+    health_.checkpoint_error = error;
+    if (error.empty()) {
+      ++health_.checkpoints;
+      health_.checkpoint_t_s = last_t_s_;
+      health_.last_t_s =
+          last_t_s_;  // so that the checkpoint has no negative age until the next report
+    } else {
+      ++health_.checkpoints_failed;
+    }
+  }
   if (error.empty() != was_well) {
     output_.event(error.empty() ? "checkpoints are written again"
                                 : "no checkpoint can be written, learning goes on: " + error);
-  }
-  const std::lock_guard lock(mutex_);
-  health_.checkpoint_error = error;
-  if (error.empty()) {
-    ++health_.checkpoints;
-    health_.checkpoint_t_s = last_t_s_;
-    health_.last_t_s =
-        last_t_s_;  // so that the checkpoint has no negative age until the next report
-  } else {
-    ++health_.checkpoints_failed;
   }
 }
 
