@@ -53,12 +53,6 @@ std::vector<std::size_t> other_inputs(std::span<const std::string> inputs,
   return others;
 }
 
-std::vector<std::size_t> commands_of(std::span<const std::string> inputs,
-                                     const ModelSettings& settings, std::size_t targets) {
-  return other_inputs(inputs, find_states(settings.shared.states, inputs, targets),
-                      attitude_for(settings.shared.terms, inputs), false);
-}
-
 // Whether the diagnosis stands by the thrust of a command as a cause of the change since `since_s`:
 // until the finding is taken back, or tells of other causes.
 bool still_named(std::span<const Finding> findings, std::size_t command, double since_s) {
@@ -163,8 +157,8 @@ struct DynamicsModel::Parts {
   ModelSettings settings;
   UpdateState state;
   std::vector<GuardedAxis> axes;
-  RoomyVector<std::size_t> order;  ///< scratch: the axes in the order of the update at hand
-  FirstMoves moves;
+  RoomyVector<std::size_t> order;   ///< scratch: the axes in the order of the update at hand
+  std::optional<FirstMoves> moves;  ///< for `change` and `diagnosis`
   std::optional<ChangeMonitor> change;
   std::optional<SteadyPart> steady;
   std::optional<Diagnosis> diagnosis;
@@ -178,8 +172,7 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
     : input_names(std::move(inputs)),
       target_names(std::move(targets)),
       settings(std::move(model_settings)),
-      state(target_names.size()),
-      moves(commands_of(input_names, settings, target_names.size()), target_names.size()) {
+      state(target_names.size()) {
   require_complete(input_names, target_names, settings);
   const std::size_t dimension = input_names.size();
   work = WorkLimit(settings.axes.size(), most_places(settings));
@@ -194,8 +187,12 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
     diagnosis.emplace(dimension, states, body_axes(input_names, states), attitude,
                       other_inputs(input_names, states, attitude, true));
   }
+  const std::vector<std::size_t> commands = other_inputs(input_names, states, attitude, false);
   if (adapts(settings) && !states.empty() && terms.size() > 0) {
-    change.emplace(terms, states, other_inputs(input_names, states, attitude, false));
+    change.emplace(terms, states, commands);
+  }
+  if (change || diagnosis) {
+    moves.emplace(commands, target_names.size());
   }
   order.reserve(settings.axes.size());
   axes.reserve(settings.axes.size());
@@ -241,7 +238,7 @@ bool DynamicsModel::Parts::trusts_sample() const {
 // the number of rows.
 void DynamicsModel::Parts::begin_with_the_moves(std::span<const double> x,
                                                 std::span<const double> y) {
-  if (!trusts_sample() || !moves.update(x, y, state.decisions)) {
+  if (!moves || !trusts_sample() || !moves->update(x, y, state.decisions)) {
     return;
   }
   if (change) {
@@ -347,7 +344,9 @@ void DynamicsModel::Parts::visit(Archive& archive) {
   }
   archive.part("clock", state.clock);
   archive.part("work", work);
-  archive.part("moves", moves);
+  if (moves) {
+    archive.part("moves", *moves);
+  }
   if (change) {
     archive.part("change", *change);
   }

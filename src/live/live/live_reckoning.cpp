@@ -252,9 +252,7 @@ void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
     return;
   }
   commands_.use(model_->alignment);
-  const std::span<const double> shifts_s = commands_.shifts_s();
-  if (!receiver.inputs_at(row.t, shifts_s, x_, late_) &&
-      !receiver.held_inputs_at(row.t, shifts_s, x_, late_)) {
+  if (!receiver.held_inputs_at(row.t, commands_.shifts_s(), x_, late_)) {
     return;
   }
   const bool is_stuck = configuration_.live.frozen == Frozen::skip && receiver.is_stuck(row.t);
@@ -279,9 +277,7 @@ void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
 
 // By the model and the commands alone.
 void LiveReckoning::advance(const Receiver& receiver, double t) {
-  const std::span<const double> shifts_s = present_commands_.shifts_s();
-  if (receiver.inputs_at(t, shifts_s, x_, late_) ||
-      receiver.held_inputs_at(t, shifts_s, x_, late_)) {
+  if (receiver.held_inputs_at(t, present_commands_.shifts_s(), x_, late_)) {
     present_commands_.act(x_, t);
     present_->update(x_, t);
   }

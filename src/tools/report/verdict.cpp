@@ -54,8 +54,7 @@ bool is_better_since(const study::AxisResult& axis, const Since& since) {
 
 // Whether rows of before the change are most of those that judge, and find the model wanting.
 bool is_judged_by_before(const study::AxisResult& axis, const Since& since) {
-  return since && 2 * since->before > since->before + since->rows &&
-         axis.r2_final < kTuning.good_r2;
+  return since && since->before > since->rows && axis.r2_final < kTuning.good_r2;
 }
 
 // How good the predictions of an axis are, in words that follow "are".

@@ -7,8 +7,6 @@
 #include "core/seconds.hpp"
 
 namespace kelpie::vehicle {
-namespace {}  // namespace
-
 double thruster_power_w(const VehicleParameters& vehicle, const RotorSpeeds& speeds_rps,
                         double factor) {
   double power = 0.0;
