@@ -7,6 +7,7 @@ import errno
 import os
 import tempfile
 from collections.abc import Sequence
+from contextlib import nullcontext
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -97,8 +98,9 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
                          "read")
     if frame and pandas is None:
         raise ImportError("frame: pandas isn't installed; without it there are arrays (frame=False)")
-    with tempfile.NamedTemporaryFile(prefix="kelpie-", suffix=".toml") as empty:  # drafts are made
-        given = empty.name if draft else "" if config is None else existing(config)
+    # An empty configuration asks for a draft.
+    with tempfile.NamedTemporaryFile(suffix=".toml") if draft else nullcontext() as empty:
+        given = empty.name if empty is not None else "" if config is None else existing(config)
         found = _kelpie.read_log(existing(path), given, list(columns or []), clock == "header",
                                  "" if messages is None else os.fspath(messages), recover, strict,
                                  list(pose or []), list(inputs or []), rate)
