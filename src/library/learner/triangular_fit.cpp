@@ -159,8 +159,20 @@ void TriangularFit::set_prior(std::span<const double> theta, std::span<const dou
   }
 }
 
+// Most terms of a young fit are centres to come: a row of zeros takes a flag's place.
 void TriangularFit::visit(Archive& archive) {
-  for (std::vector<double>* const values : {&factor_, &theta_, &moment_, &prior_}) {
+  const std::size_t columns = row_.size();
+  for (std::size_t k = 0; k < terms(); ++k) {
+    const std::span<double> row = std::span(factor_).subspan(k * columns + k, columns - k);
+    bool moved = std::ranges::any_of(row, [](double value) { return value != 0.0; });
+    archive.flag(moved);
+    if (moved) {
+      archive.numbers(row);
+    } else {
+      std::ranges::fill(row, 0.0);
+    }
+  }
+  for (std::vector<double>* const values : {&theta_, &moment_, &prior_}) {
     archive.numbers(*values);
   }
   archive.whole(rows_);

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include "kelpie/core/archive.hpp"
 #include "kelpie/core/random.hpp"
 
 namespace kelpie::triangular_fit_test {
@@ -151,6 +153,35 @@ TEST(TriangularFit, ClearedItIsAsNew) {
     fresh.add(phi_of(all, i), all.y[i]);
   }
   EXPECT_EQ(numbers(fit.theta()), numbers(fresh.theta()));
+}
+
+// A checkpoint has no place for terms that never moved, and a fit goes on from it bit by bit.
+TEST(TriangularFit, SavedWithoutTermsThatNeverMoved) {
+  const Rows all = rows(50);
+  constexpr std::size_t kTerms = 200;
+  TriangularFit fit(kTerms, 0.1);
+  std::vector<double> phi(kTerms);
+  const auto add = [&](TriangularFit& to, Eigen::Index i) {
+    std::ranges::copy(phi_of(all, i), phi.begin() + 100);
+    to.add(phi, all.y[i]);
+  };
+  for (Eigen::Index i = 0; i < 25; ++i) {
+    add(fit, i);
+  }
+  Archive saved;
+  fit.visit(saved);
+  EXPECT_LT(saved.bytes().size(), 8 * (kTerms * 4 + 3 * (kTerms + 1) + 1));
+  TriangularFit loaded(kTerms, 0.1);
+  loaded.add(std::vector<double>(kTerms, 1.0), 1.0);
+  Archive archive(saved.bytes());
+  loaded.visit(archive);
+  archive.finish();
+  for (Eigen::Index i = 25; i < 50; ++i) {
+    add(fit, i);
+    add(loaded, i);
+  }
+  EXPECT_EQ(numbers(loaded.theta()), numbers(fit.theta()));
+  EXPECT_EQ(loaded.variance(101), fit.variance(101));
 }
 
 // Targets that share their rows are fitted as if each were alone, whatever is done to the rows.
