@@ -172,6 +172,15 @@ void MotionTerms::add_products(std::span<const std::size_t> inputs) {
   }
 }
 
+void MotionTerms::add_lift(std::size_t command) {
+  add(TermForm::lift, command, velocities_.front());
+  for (const std::size_t other : commands_) {
+    if (other != command && commands_.size() <= kFewCommands) {
+      add(TermForm::lift, command, other);
+    }
+  }
+}
+
 void MotionTerms::add_restoring(const Attitude& attitude) {
   const auto add_of = [&](MotionTerm term) { terms_.push_back(term); };
   if (attitude.quaternion) {
@@ -247,12 +256,7 @@ MotionTerms MotionTerms::open_loop(std::size_t inputs, std::span<const std::size
     terms.add_restoring(attitude);
     for (const std::size_t n : terms.commands_) {
       terms.add(TermForm::linear, n);
-      terms.add(TermForm::lift, n, velocities.front());
-      for (const std::size_t m : terms.commands_) {
-        if (n != m && terms.commands_.size() <= kFewCommands) {
-          terms.add(TermForm::lift, n, m);
-        }
-      }
+      terms.add_lift(n);
     }
     for (const std::size_t n : terms.commands_) {
       for (const std::size_t v : velocities.first(flows)) {
@@ -300,6 +304,9 @@ MotionTerms MotionTerms::diagnosis(std::size_t inputs, std::span<const std::size
   std::erase_if(terms.commands_, [&](std::size_t input) {
     return std::ranges::find(others, input) != others.end();
   });
+  for (const std::size_t n : terms.commands_) {
+    terms.add_lift(n);
+  }
   terms.add_restoring(attitude);
   return terms;
 }

@@ -11,6 +11,7 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
 #include "motion/drive.hpp"
 
 namespace kelpie::diagnosis_test {
@@ -59,6 +60,53 @@ void expect_named(const Drive::Fault& fault, CauseKind kind, std::size_t place, 
 TEST(Diagnosis, NamesAWeakThruster) {
   expect_named({.thrust = {1.0, 0.8, 1.0}}, CauseKind::thruster, 4, 0.8);
   expect_named({.thrust = {0.2, 1.0, 1.0}}, CauseKind::thruster, 3, 0.2);
+}
+
+// A ship with a rudder behind its screw.
+class Ship {
+ public:
+  // Shows so many rows. The screw turns at `screw` and up to a third more.
+  void show(std::size_t rows, double screw, double rudder_share) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      t_ += 0.25;
+      const double n = screw * (1.15 + 0.15 * std::sin(0.11 * t_) + 0.05 * std::sin(0.31 * t_));
+      const double rudder = 0.3 * std::sin(0.17 * t_) + 0.2 * std::sin(0.41 * t_ + 1.0);
+      auto& [u, v, r] = velocities_;
+      const double lift = -rudder_share * rudder * (0.05 * n * n + u * std::abs(u));
+      const std::array<double, 3> a{0.01 * n * n - 0.3 * u * std::abs(u),
+                                    0.1 * lift - 0.5 * v - 0.2 * u * r,
+                                    0.2 * lift - 0.4 * r - 0.5 * r * std::abs(r)};
+      std::array<double, 5> x{u, v, r, n, rudder};
+      std::array<double, 3> y = a;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        x[axis] += 2e-4 * random_.normal();
+        y[axis] += 1e-3 * random_.normal();
+        velocities_[axis] += 0.25 * a[axis];
+      }
+      diagnosis.update(x, y, t_);
+    }
+  }
+
+  Diagnosis diagnosis{5, {0, 1, 2}, {0, 1, 5}};
+
+ private:
+  RandomStream random_{7, "ship"};
+  std::array<double, 3> velocities_{};
+  double t_ = 0.0;
+};
+
+// A rudder's force is not that of its angle: faster, the ship turns as the same ship does.
+TEST(Diagnosis, KnowsThatARudderNeedsFlow) {
+  Ship ship;
+  ship.show(kBefore, 3.0, 1.0);
+  ship.show(2 * kBefore, 6.0, 1.0);
+  EXPECT_EQ(ship.diagnosis.found(), 0U);
+  ship.show(kMinute, 4.5, 0.6);
+  ASSERT_EQ(ship.diagnosis.findings().size(), 1U);
+  const Cause& cause = ship.diagnosis.findings().front().causes[0];
+  EXPECT_EQ(cause.kind, CauseKind::thruster);
+  EXPECT_EQ(cause.place, 4U);
+  EXPECT_NEAR(cause.size, 0.6, 0.02);
 }
 
 TEST(Diagnosis, NamesDragForceAndLoad) {
