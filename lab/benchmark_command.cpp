@@ -142,11 +142,7 @@ std::string manifest_of(const Drive& drive, const vehicle::Scenario& scenario, s
 void run_benchmark(const BenchmarkArguments& options) {
   const std::string file = scenario_file(options.scenario, "diagnosis.toml");
   const vehicle::Scenario scenario = vehicle::read_scenario(file);
-  try {
-    vehicle::require_plane(scenario.vehicle);
-  } catch (const InputError& error) {
-    throw InputError({.file = file}, error.what());
-  }
+  in_file(file, [&] { vehicle::require_plane(scenario.vehicle); });
   std::string manifest =
       "# SPDX-License-Identifier: Apache-2.0\n# Simulated drives for kelpie.benchmark.\n";
   std::vector<std::string> names{"simulated.toml"};

@@ -25,10 +25,27 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& message);                 ///< Without a place.
 
   const Place& place() const { return place_; }
+  const std::string& message() const { return message_; }  ///< The text without the place.
 
  private:
   Place place_;
+  std::string message_;
 };
+
+/// Calls `work`. An InputError of `work` that names no file is thrown again with `file`.
+template <typename Work>
+auto in_file(const std::string& file, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    if (!error.place().file.empty()) {
+      throw;
+    }
+    Place place = error.place();
+    place.file = file;
+    throw InputError(place, error.message());
+  }
+}
 
 /// Throws InputError "`field`: `wanted`" unless `holds`.
 void require(bool holds, std::string_view field, std::string_view wanted);

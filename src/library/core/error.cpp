@@ -27,7 +27,7 @@ std::string locate(const Place& place, const std::string& message) {
 }  // namespace
 
 InputError::InputError(const Place& place, const std::string& message)
-    : std::runtime_error(locate(place, message)), place_(place) {}
+    : std::runtime_error(locate(place, message)), place_(place), message_(message) {}
 
 InputError::InputError(std::string_view field, const std::string& message)
     : InputError(Place{.file = {}, .line = 0, .field = std::string(field)}, message) {}

@@ -296,7 +296,8 @@ std::optional<live::SavedRun> saved_run(const LiveArguments& options,
     }
     return saved;
   } catch (const InputError& error) {
-    throw InputError(std::string(error.what()) + "; --fresh begins anew, or give another --out");
+    throw InputError(error.place(),
+                     error.message() + "; --fresh begins anew, or give another --out");
   }
 }
 

@@ -112,13 +112,11 @@ std::optional<SavedRun> find_checkpoint(const std::filesystem::path& folder,
                .model = std::move(state.model),
                .file = state.file,
                .note = found->passed_over};
-  try {
+  in_file(state.file, [&] {
     Archive archive(state.stream);
     run.progress.visit(archive);
     archive.finish();
-  } catch (const InputError& error) {
-    throw InputError({.file = state.file, .line = 0, .field = {}}, error.what());
-  }
+  });
   return run;
 }
 
@@ -140,11 +138,8 @@ DynamicsModel model_to_begin_with(const Configuration& configuration, const stud
     }
     return model;
   }
-  try {
-    return DynamicsModel::resume(fresh_model(configuration), saved->model);
-  } catch (const InputError& error) {
-    throw InputError({.file = saved->file, .line = 0, .field = {}}, error.what());
-  }
+  return in_file(saved->file,
+                 [&] { return DynamicsModel::resume(fresh_model(configuration), saved->model); });
 }
 
 }  // namespace kelpie::live

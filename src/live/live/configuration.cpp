@@ -169,19 +169,6 @@ LiveSettings read_live(const file::TomlNode& live) {
   return settings;
 }
 
-// Errors of what isn't one key alone still name the file.
-template <typename Function>
-auto in_file(const std::string& file, Function function) {
-  try {
-    return function();
-  } catch (const InputError& error) {
-    if (!error.place().file.empty()) {
-      throw;
-    }
-    throw InputError({.file = file, .line = 0, .field = {}}, error.what());
-  }
-}
-
 // Samples per signal: the window of a pose is longer than that of a derivative.
 std::size_t history_of(const StreamPlan& plan) {
   const double window_s = plan.pose ? 2.0 * plan.pose->half_s + plan.gap_s + plan.wait_s : 0.0;

@@ -335,12 +335,10 @@ void LiveLearner::serve_block() {
   if (!block_) {
     return;
   }
-  try {
+  in_file(configuration_.live.block, [&] {
     model_->serve(block_->bytes(), configuration_.plan.inputs, configuration_.plan.targets,
                   alignment_.alignment());
-  } catch (const InputError& error) {
-    throw InputError({.file = configuration_.live.block, .line = 0, .field = {}}, error.what());
-  }
+  });
 }
 
 void LiveLearner::give_model() {

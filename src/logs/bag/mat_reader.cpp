@@ -60,11 +60,7 @@ class MatReader final : public MessageReader {
   }
 
   std::vector<MatTopic> topics_of(const RowTimes& times) const {
-    try {
-      return mat_topics(arrays_, times);
-    } catch (const InputError& error) {
-      throw InputError({.file = source()}, error.what());
-    }
+    return in_file(source(), [&] { return mat_topics(arrays_, times); });
   }
 
   // The topic whose next row is the earliest.

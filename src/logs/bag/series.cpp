@@ -171,14 +171,9 @@ const Series& series_with(std::span<const Series> all, const std::string& column
 std::vector<Series> read_series(MessageReader& bag, const MessageDefinitions& definitions,
                                 std::span<const std::string> columns, Clock clock, bool armed_only,
                                 std::map<std::string, double>* parameters) {
-  try {
+  return in_file(bag.source(), [&] {
     return read_named(bag, definitions, columns, clock, armed_only, parameters);
-  } catch (const InputError& error) {
-    if (!error.place().file.empty()) {
-      throw;
-    }
-    throw InputError({.file = bag.source()}, error.what());
-  }
+  });
 }
 
 }  // namespace kelpie::bag

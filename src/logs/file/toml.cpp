@@ -263,11 +263,10 @@ void TomlNode::locate_errors(const std::function<void()>& check) const {
       path.resize(path.find_last_of(".[") == std::string::npos ? 0 : path.find_last_of(".["));
     }
     const toml::node& node = path.empty() ? table : *table.at_path(path).node();
-    const std::string text = error.what();
     throw InputError({.file = value_->file,
                       .line = node.source().begin.line,
                       .field = value_->path.empty() ? field : value_->path + "." + field},
-                     text.substr(std::min(text.size(), field.size() + 2)));
+                     error.message());
   }
 }
 

@@ -206,9 +206,7 @@ bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) 
     guess_roles(table, all);
     return true;
   } catch (const InputError& error) {
-    why_not = error.what();
-    why_not =
-        why_not.substr(why_not.starts_with(table.source + ": ") ? table.source.size() + 2 : 0);
+    why_not = InputError(error.place().field, error.message()).what();  // without the file
     return false;
   }
 }

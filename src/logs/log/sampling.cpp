@@ -253,14 +253,12 @@ std::vector<std::string> sampled_columns(const StreamPlan& plan) {
 }
 
 Samples sample(const SamplingPlan& plan, std::vector<Signal> signals, const std::string& source) {
-  try {
+  return in_file(source, [&] {
     plan.validate();
     Samples samples = Sampler(plan, std::move(signals)).run();
     samples.table.source = source;
     return samples;
-  } catch (const InputError& error) {
-    throw InputError({.file = source}, error.what());
-  }
+  });
 }
 
 }  // namespace kelpie::log

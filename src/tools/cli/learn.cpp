@@ -224,11 +224,8 @@ study::StreamResult learn_with_progress(const LearnArguments& options, const stu
 
 // The model as the checkpoint of the earlier run has it.
 DynamicsModel resumed_model(DynamicsModel fresh, const format::RunState& earlier) {
-  try {
-    return DynamicsModel::resume(std::move(fresh), earlier.model);
-  } catch (const InputError& error) {
-    throw InputError({.file = earlier.file, .line = 0, .field = {}}, error.what());
-  }
+  return in_file(earlier.file,
+                 [&] { return DynamicsModel::resume(std::move(fresh), earlier.model); });
 }
 
 // Returns whether a model is among the results.

@@ -103,11 +103,9 @@ log::Dataset open_logs(const PlanOptions& options, bool is_new, PlannedLog& plan
 // A mistake in a formula is told with the file that has the formula.
 void check_terms(const ModelSettings& settings, const log::Dataset& data,
                  const std::string& config) {
-  try {
+  in_file(config, [&] {
     TermSet::from(settings.shared.terms, data.input_names, data.target_names.size());
-  } catch (const InputError& error) {
-    throw InputError({.file = config}, error.what());
-  }
+  });
 }
 
 // Appends an option with a value, unless the value is empty.

@@ -29,16 +29,12 @@ void run_simulate(const SimulateArguments& options) {
   scenario.seed = options.seed.value_or(scenario.seed);
   ProgressBar bar("simulating");
   const vehicle::Progress progress = [&](double share) { bar.at(share); };
-  const log::Table table = [&] {
-    try {
-      return scenario.log == vehicle::LogKind::six
-                 ? study::log_table(vehicle::simulate_six_axes(scenario, progress),
-                                    scenario.vehicle, options.scenario)
-                 : study::log_table(vehicle::simulate(scenario, progress), options.scenario);
-    } catch (const InputError& error) {
-      throw InputError({.file = options.scenario}, error.what());
-    }
-  }();
+  const log::Table table = in_file(options.scenario, [&] {
+    return scenario.log == vehicle::LogKind::six
+               ? study::log_table(vehicle::simulate_six_axes(scenario, progress), scenario.vehicle,
+                                  options.scenario)
+               : study::log_table(vehicle::simulate(scenario, progress), options.scenario);
+  });
   log::write_csv(options.out, table);
   say("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, table.rows(), scenario.duration_s(),
       scenario.rate_hz, scenario.seed);

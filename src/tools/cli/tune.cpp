@@ -96,7 +96,7 @@ PlannedLog open_tune_log(const TuneArguments& options, const std::string& path) 
     return plan_log(one);
   } catch (const InputError& error) {
     if (error.place().field == "states" && error.place().file.empty()) {
-      throw InputError({.file = path, .line = 0, .field = {}}, error.what());  // one of many logs
+      throw InputError({.file = path, .field = "states"}, error.message());  // one of many logs
     }
     throw;
   }

@@ -38,9 +38,7 @@ auto at_node(const TomlNode& node, Check check) {
   try {
     return check();
   } catch (const InputError& error) {
-    const std::string text = error.what();
-    const std::string field = error.place().field + ": ";
-    node.refuse(text.starts_with(field) ? text.substr(field.size()) : text);
+    node.refuse(error.message());
   }
 }
 

@@ -99,7 +99,7 @@ IdentifiedThruster in_six(const PlanarThruster& thruster) {
           .direction = {c, s, 0.0}};
 }
 
-vehicle::Thruster in_file(const IdentifiedThruster& thruster) {
+vehicle::Thruster file_thruster(const IdentifiedThruster& thruster) {
   return {.forward = thruster.forward,
           .reverse = thruster.reverse,
           .position_m = thruster.position_m,
@@ -130,7 +130,7 @@ void fill_slots(IdentifiedVehicle& result, bool has_verticals) {
   }
   result.body.thrusters.resize(vehicle::kPlanarThrusterCount);
   const auto put = [&](std::size_t slot, std::size_t i) {
-    result.body.thrusters[slot] = in_file(result.thrusters[i]);
+    result.body.thrusters[slot] = file_thruster(result.thrusters[i]);
     result.body.thrusters[slot].name = vehicle::planar_thruster_names()[slot];
   };
   const auto side = [&](std::size_t i) {  // negative: left of the middle

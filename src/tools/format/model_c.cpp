@@ -467,11 +467,7 @@ class ModelCode {
 
 std::string model_c(const TrainedModel& model, const CodeOptions& options) {
   check(model, options);
-  try {
-    return ModelCode(model, options).file();
-  } catch (const InputError& error) {
-    throw InputError({.file = options.source, .line = 0, .field = {}}, error.what());
-  }
+  return in_file(options.source, [&] { return ModelCode(model, options).file(); });
 }
 
 std::string model_h(const TrainedModel& model, const CodeOptions& options) {

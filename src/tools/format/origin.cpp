@@ -69,16 +69,14 @@ DynamicsModel Origin::fresh(const ModelSettings& settings) const {
 }
 
 DynamicsModel Origin::model(const ModelSettings& settings, double start_s) const {
-  try {
+  return in_file(file_, [&] {
     if (const auto* const saved = std::get_if<SavedModel>(&saved_)) {
       return DynamicsModel::resume(fresh(settings), saved->state);
     }
     TrainedModel trained = std::get<TrainedModel>(saved_);
     trained.settings = settings;
     return DynamicsModel::resume_from(trained, start_s);
-  } catch (const InputError& error) {
-    throw InputError({.file = file_, .line = 0, .field = {}}, error.what());
-  }
+  });
 }
 
 }  // namespace kelpie::format

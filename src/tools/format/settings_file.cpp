@@ -15,7 +15,7 @@ void at_place(const std::string& file, std::size_t line, Set set) {
   try {
     set();
   } catch (const InputError& error) {
-    throw InputError({.file = file, .line = line, .field = {}}, error.what());
+    throw InputError({.file = file, .line = line, .field = error.place().field}, error.message());
   }
 }
 

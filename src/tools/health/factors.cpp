@@ -146,12 +146,9 @@ HealthTable judge_drives(const std::vector<DriveLog>& logs, const DriveColumns& 
   HealthTable table;
   std::vector<DriveRows> drives;
   cut(logs, inputs, table, drives);
-  EffectFactors found;
-  try {
-    found = fit_factors(drives, inputs.names, inputs.velocities, kLongestStep / first.rate_hz);
-  } catch (const InputError& error) {
-    throw InputError({.file = first.source, .line = 0, .field = {}}, error.what());
-  }
+  const EffectFactors found = in_file(first.source, [&] {
+    return fit_factors(drives, inputs.names, inputs.velocities, kLongestStep / first.rate_hz);
+  });
   for (const Effect& effect : found.effects) {
     table.quantities.push_back(quantity_of(effect, inputs.names));
   }

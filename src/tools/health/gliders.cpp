@@ -430,12 +430,9 @@ HealthTable judge_gliders(const std::vector<GliderLog>& logs, const GliderColumn
     all.push_back(rows.back().glide);
     halves.push_back(fit_half(all.back(), columns));
   }
-  GlideFit common;
-  try {
-    common = fit_glide(all, first_glide(), common_places(columns));
-  } catch (const InputError& error) {
-    throw InputError({.file = logs.front().table.source, .line = 0, .field = {}}, error.what());
-  }
+  const GlideFit common = in_file(logs.front().table.source, [&] {
+    return fit_glide(all, first_glide(), common_places(columns));
+  });
   HealthTable table{.quantities = quantities_of(columns), .episodes = {}, .estimates = {}};
   const TrimPlane plane = trim_plane(rows);
   for (std::size_t i = 0; i < logs.size(); ++i) {

@@ -117,11 +117,10 @@ std::string fins_text(const std::vector<std::string>& fins);
 template <typename Estimate>
 auto of_log(const log::Dataset& data, Estimate estimate) {
   try {
-    return estimate();
+    return in_file(data.source, estimate);
   } catch (const InputError& error) {
     const std::string fins = fins_text(fins_of(data));
-    throw InputError({.file = data.source, .line = 0, .field = {}},
-                     error.what() + (fins.empty() ? "" : "; " + fins));
+    throw InputError(error.place(), error.message() + (fins.empty() ? "" : "; " + fins));
   }
 }
 
