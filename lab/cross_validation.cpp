@@ -17,7 +17,7 @@ void check_list(const std::vector<double>& values, const char* field, const Rang
     throw InputError(field, "no values to try; there has to be one or more");
   }
   for (const double value : values) {
-    require_in(range, value, field);
+    require_range(field, value, range);
   }
 }
 
@@ -94,9 +94,9 @@ void CrossValidationOptions::validate() const {
   check_list(gamma, "gamma", {.low = 0.0, .open = true});
   check_list(c, "c", {.low = 0.0, .open = true});
   check_list(epsilon, "epsilon", {.low = 0.0});
-  require_in({.low = 2.0, .high = 1000.0}, folds, "folds");
-  require_in({.low = 1.0}, thin, "thin");
-  require_in({.low = 1.0, .high = 1024.0}, threads, "threads");
+  require_range("folds", folds, {.low = 2.0, .high = 1000.0});
+  require_range("thin", thin, {.low = 1.0});
+  require_range("threads", threads, {.low = 1.0, .high = 1024.0});
 }
 
 CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSettings& base,

@@ -119,18 +119,12 @@ SvrFunction train_by_libsvm(const SampleStore& samples, std::span<const double> 
   return function;
 }
 
-void require_in(const Range& range, double value, const char* field) {
-  if (!range.holds(value)) {
-    throw InputError(field, number_text(value) + " is out of range; it has to be " + range.text());
-  }
-}
-
 void OfflineSvrSettings::validate() const {
-  require_in({.low = 0.0, .open = true}, gamma, "gamma");
-  require_in({.low = 0.0, .open = true}, c, "c");
-  require_in({.low = 0.0}, epsilon, "epsilon");
-  require_in({.low = 0.0, .high = 1.0, .open = true}, tolerance, "tolerance");
-  require_in({.low = 1.0}, cache_mb, "cache_mb");
+  require_range("gamma", gamma, {.low = 0.0, .open = true});
+  require_range("c", c, {.low = 0.0, .open = true});
+  require_range("epsilon", epsilon, {.low = 0.0});
+  require_range("tolerance", tolerance, {.low = 0.0, .high = 1.0, .open = true});
+  require_range("cache_mb", cache_mb, {.low = 1.0});
 }
 
 OfflineSvr::OfflineSvr(const TrainingRows& data, const OfflineSvrSettings& settings)

@@ -38,9 +38,6 @@ struct OfflineSvrSettings {
   void validate() const;
 };
 
-/// Throws InputError with field and value out of range.
-void require_in(const Range& range, double value, const char* field);
-
 /// Trains by LIBSVM on scaled inputs and targets; settings.scaling is ignored. Cost between O(n²)
 /// and O(n³). Switches LIBSVM's printing off for the whole process. Requires a target per sample,
 /// at least two, and valid settings.

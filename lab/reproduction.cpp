@@ -449,14 +449,12 @@ class Runner {
 }  // namespace
 
 void ReproductionPlan::validate() const {
-  require(seeds >= 1 && seeds <= 1000, "seeds",
-          std::to_string(seeds) + " is out of range; it has to be 1 to 1000");
+  require_range("seeds", static_cast<double>(seeds), {.low = 1.0, .high = 1000.0});
   for (const double share : {scenario_share, further_share}) {
-    require(share > 0.0 && share <= 1.0, "scenario_share",
-            number_text(share) + " is out of range; it has to be more than 0, up to 1");
+    require_range("scenario_share", share, {.low = 0.0, .high = 1.0, .open = true});
   }
-  require(validate_every >= 1, "validate_every", "0 is out of range; it has to be >= 1");
-  require(published_every >= 1, "published_every", "0 is out of range; it has to be >= 1");
+  require_range("validate_every", static_cast<double>(validate_every), {.low = 1.0});
+  require_range("published_every", static_cast<double>(published_every), {.low = 1.0});
   grid.validate();
 }
 

@@ -34,6 +34,10 @@ struct Range {
   std::string text() const;  ///< "> 0", ">= 0", "0 to 1", "more than 0, up to 1"
 };
 
+/// Throws InputError about `field`, with range and unit, on a value out of range.
+void require_range(std::string_view field, double value, const Range& range,
+                   const std::string& unit = {});
+
 /// The condition that leaves a setting without effect: certain values (separated by commas) of
 /// another setting; or a condition that is no setting, without values.
 struct IdleCondition {
@@ -105,12 +109,9 @@ struct Setting {
 
   /// Throws InputError naming the field on a number out of range.
   void check(const T& settings) const {
-    if (std::holds_alternative<Choice>(member) || std::holds_alternative<Text>(member) ||
-        range.holds(number(settings))) {
-      return;
+    if (!std::holds_alternative<Choice>(member) && !std::holds_alternative<Text>(member)) {
+      require_range(name, number(settings), range);
     }
-    throw InputError(std::string(name), number_text(number(settings)) +
-                                            " is out of range; it has to be " + range.text());
   }
 
   /// Valid values: the choices or the range.

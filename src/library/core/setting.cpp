@@ -47,6 +47,14 @@ std::string Range::text() const {
               : number_text(low) + " to " + number_text(high);
 }
 
+void require_range(std::string_view field, double value, const Range& range,
+                   const std::string& unit) {
+  if (!range.holds(value)) {
+    throw InputError(field, number_text(value) + " is out of range; it has to be " + range.text() +
+                                (unit.empty() ? "" : " " + unit));
+  }
+}
+
 std::string IdleCondition::text(std::string_view value) const {
   return "with " + std::string(with) + (value.empty() ? "" : " = " + std::string(value));
 }

@@ -11,7 +11,6 @@
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
-#include "stream/require_range.hpp"
 #include "stream/tuning.hpp"
 
 namespace kelpie {

@@ -7,7 +7,6 @@
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
-#include "stream/require_range.hpp"
 #include "stream/tuning.hpp"
 
 namespace kelpie {

@@ -285,9 +285,8 @@ void predict(const PredictArguments& options) {
   }
   add_units(options.units, roles.units);
   roles.pose = options.pose;
-  if (!std::isfinite(roles.rate_hz) || roles.rate_hz < 0.0) {
-    throw InputError(
-        "rate", number_text(roles.rate_hz) + " is out of range; it has to be > 0 rows per second");
+  if (roles.rate_hz != 0.0) {
+    require_range("rate", roles.rate_hz, {.low = 0.0, .open = true}, "rows per second");
   }
   log::Log log = open_log(options.source, config, roles);
   log::Table& table = log.table;

@@ -114,9 +114,7 @@ std::unique_ptr<OnlineRegressor> TuneOptions::online_learner(const log::Dataset&
 }
 
 void TuneOptions::validate() const {
-  if (candidates < 1) {
-    throw InputError("candidates", "0 is out of range; it has to be >= 1");
-  }
+  require_range("candidates", static_cast<double>(candidates), {.low = 1.0});
   if (!(most_iterations > 0.0)) {
     throw InputError("most_iterations",
                      number_text(most_iterations) + " is out of range; it has to be > 0");
