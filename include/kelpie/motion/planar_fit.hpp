@@ -21,13 +21,26 @@ enum class ParameterState : std::uint8_t {
   not_told,    ///< not determined by the log: the value alone is meaningless
 };
 
+/// What a parameter is.
+enum class ParameterKind : std::uint8_t {
+  inertia,
+  size,      ///< a drag, a thrust, the righting moment
+  coupling,  ///< of two inertias
+  offset,    ///< a force or moment that may be 0
+  arm,
+  angle,
+  curve,  ///< of the thrust curve
+};
+
 /// Estimate of one parameter.
 struct FittedParameter {
   std::string name;  ///< "sway_inertia", "th1.forward"
+  ParameterKind kind = ParameterKind::size;
   double value = 0.0;
   double error = 0.0;  ///< standard error
   ParameterState state = ParameterState::identified;
-  bool scales = true;  ///< proportional to the scale of forces; angles, arms and times are not
+
+  bool scales() const { return kind < ParameterKind::arm; }  ///< With the unit of forces.
 };
 
 /// Parameters of an equation of motion, estimated from a log.
@@ -137,8 +150,9 @@ struct PlanarPlace {
   }
 };
 
-/// Names of the parameters of a vehicle with these thrusters, in the order of PlanarPlace.
-std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters);
+/// Names and kinds of the parameters of a vehicle with these thrusters, in the order of
+/// PlanarPlace.
+std::vector<FittedParameter> planar_parameters(const std::vector<std::string>& thrusters);
 
 /// Parameters of Fossen's equation in the plane, estimated from a log.
 struct PlanarFit : ParameterFit {

@@ -23,26 +23,31 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<const char*, SixAxisPlace::thrusters> kVehicleNames{
-    "surge_inertia",        "sway_inertia",        "heave_inertia",        "roll_inertia",
-    "pitch_inertia",        "yaw_inertia",         "low_centre",           "forward_centre",
-    "surge_linear_drag",    "sway_linear_drag",    "heave_linear_drag",    "roll_linear_drag",
-    "pitch_linear_drag",    "yaw_linear_drag",     "surge_quadratic_drag", "sway_quadratic_drag",
-    "heave_quadratic_drag", "roll_quadratic_drag", "pitch_quadratic_drag", "yaw_quadratic_drag",
-    "net_weight",           "roll_moment",         "pitch_moment",         "righting_moment"};
-constexpr std::array<const char*, SixAxisPlace::curve_size> kCurveNames{"lag", "delay", "dead_band",
-                                                                        "volts_exponent"};
-
-std::vector<std::string> names_of(const std::vector<PlacedThruster>& thrusters) {
-  std::vector<std::string> names(kVehicleNames.begin(), kVehicleNames.end());
+// Names and kinds, in the order of SixAxisPlace.
+std::vector<FittedParameter> six_axis_parameters(const std::vector<PlacedThruster>& thrusters) {
+  using enum ParameterKind;
+  std::vector<FittedParameter> parameters;
+  const auto add_axes = [&](const char* name, ParameterKind kind) {
+    for (const char* const axis : {"surge", "sway", "heave", "roll", "pitch", "yaw"}) {
+      parameters.push_back({axis + std::string(name), kind});
+    }
+  };
+  add_axes("_inertia", inertia);
+  parameters.insert(parameters.end(), {{"low_centre", coupling}, {"forward_centre", coupling}});
+  add_axes("_linear_drag", size);
+  add_axes("_quadratic_drag", size);
+  parameters.insert(parameters.end(), {{"net_weight", offset},
+                                       {"roll_moment", offset},
+                                       {"pitch_moment", offset},
+                                       {"righting_moment", size}});
   for (const PlacedThruster& thruster : thrusters) {
-    names.push_back(thruster.name + ".forward");
-    names.push_back(thruster.name + ".reverse");
+    parameters.push_back({thruster.name + ".forward", size});
+    parameters.push_back({thruster.name + ".reverse", size});
   }
-  for (const char* const name : kCurveNames) {
-    names.push_back(std::string("thrusters.") + name);
+  for (const char* const name : {"lag", "delay", "dead_band", "volts_exponent"}) {
+    parameters.push_back({std::string("thrusters.") + name, curve});
   }
-  return names;
+  return parameters;
 }
 
 // Gaps between stretches are no steps. 1 s without a step.
@@ -280,32 +285,31 @@ SixAxisFit Search::collected() const {
   fit.windows = static_cast<std::size_t>(weak_.terms.rows());
   fit.window_s = 2.0 * windows_.shape.half_s;
   fit.misfit = misfit_of(best_, errors_);
-  const std::vector<std::string> names = names_of(rows_.thrusters);
+  fit.parameters = six_axis_parameters(rows_.thrusters);
   const Eigen::Index terms = place_of(structure_.terms().size());
   fit.free_terms = Matrix(static_cast<std::size_t>(terms), kSixAxes);
   as_matrix(fit.free_terms) = free_.coefficients.topRows(terms);
-  fit.covariance = Matrix(names.size(), names.size());
+  fit.covariance = Matrix(fit.parameters.size(), fit.parameters.size());
   auto covariance = as_matrix(fit.covariance);
   covariance(best_.free, best_.free) =
       kStudent * kStudent * fit.misfit * errors_.covariance + velocity_covariance();
   const Eigen::VectorXd blur = blurs(errors_.covariance);
   const std::size_t curve = SixAxisPlace::curve(rows_.thrusters.size());
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    FittedParameter& parameter = fit.parameters[i];
     const auto found = std::ranges::find(best_.free, place_of(i));
     const bool is_sought = found != best_.free.end();
-    const double value =
+    parameter.value =
         i >= curve ? fit.curve.*kThrustCurve[i - curve] : best_.parameters(place_of(i));
     if (is_sought) {
       covariance(place_of(i), place_of(i)) += std::pow(allowance(i), 2.0);
     }
-    const ParameterState state =
-        i == SixAxisPlace::inertia ? ParameterState::known
-        : !is_sought || blur(found - best_.free.begin()) > kIdentification.most_blur
-            ? ParameterState::not_told
-        : best_.at_bound[i] ? ParameterState::at_bound
-                            : ParameterState::identified;
-    fit.parameters.push_back(
-        {names[i], value, std::sqrt(covariance(place_of(i), place_of(i))), state, i < curve});
+    parameter.error = std::sqrt(covariance(place_of(i), place_of(i)));
+    parameter.state = i == SixAxisPlace::inertia ? ParameterState::known
+                      : !is_sought || blur(found - best_.free.begin()) > kIdentification.most_blur
+                          ? ParameterState::not_told
+                      : best_.at_bound[i] ? ParameterState::at_bound
+                                          : ParameterState::identified;
   }
   return fit;
 }

@@ -20,19 +20,6 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<const char*, PlanarPlace::thrusters> kVehicleNames{
-    "surge_inertia",       "sway_inertia",       "sway_yaw_inertia", "yaw_inertia",
-    "surge_linear_drag",   "sway_linear_drag",   "yaw_linear_drag",  "surge_quadratic_drag",
-    "sway_quadratic_drag", "yaw_quadratic_drag", "surge_force",      "sway_force",
-    "yaw_moment"};
-constexpr std::array<const char*, PlanarPlace::per_thruster> kThrusterNames{"forward", "reverse",
-                                                                            "angle", "arm"};
-
-bool is_angle(std::size_t place) {
-  return place >= PlanarPlace::thrusters &&
-         (place - PlanarPlace::thrusters) % PlanarPlace::per_thruster == 2;
-}
-
 // In the plane, with as many parameters as `parameters`.
 EquationStructure planar_structure(const Eigen::VectorXd& parameters) {
   EquationStructure structure{.residual = structure_residual, .mass = planar_mass};
@@ -190,31 +177,30 @@ PlanarFit planar_estimate(const std::vector<std::string>& thrusters, const WeakR
   fit.windows = static_cast<std::size_t>(weak.terms.rows());
   fit.window_s = 2.0 * kIdentification.half_window_s;
   fit.misfit = misfit;
-  const std::vector<std::string> names = planar_parameter_names(thrusters);
-  fit.covariance = Matrix(names.size(), names.size());
+  fit.parameters = planar_parameters(thrusters);
+  fit.covariance = Matrix(fit.parameters.size(), fit.parameters.size());
   auto covariance = as_matrix(fit.covariance);
   covariance(best.free, best.free) = misfit * errors;
   const Eigen::Vector3d forces = force_sizes(weak, best.parameters);
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    FittedParameter& parameter = fit.parameters[i];
     const auto place = static_cast<Eigen::Index>(i);
     const bool is_sought = std::ranges::find(best.free, place) != best.free.end();
-    const double value = best.parameters(place);
+    parameter.value = best.parameters(place);
     const double chance = std::sqrt(covariance(place, place) / misfit);  // excitation's alone
     if (is_sought) {
-      const double allowance = is_angle(i) ? kIdentification.angle_allowance_rad
-                                           : kIdentification.plane_allowance * value;
+      const double allowance = parameter.kind == ParameterKind::angle
+                                   ? kIdentification.angle_allowance_rad
+                                   : kIdentification.plane_allowance * parameter.value;
       covariance(place, place) += allowance * allowance;
     }
-    const double error = std::sqrt(covariance(place, place));
-    const ParameterState state =
+    parameter.error = std::sqrt(covariance(place, place));
+    parameter.state =
         i == PlanarPlace::surge_inertia ? ParameterState::known
         : !is_sought || blur(i, chance, best.parameters, weak, forces) > kIdentification.most_blur
             ? ParameterState::not_told
         : best.at_bound[i] ? ParameterState::at_bound
                            : ParameterState::identified;
-    const bool scales =
-        i < PlanarPlace::thrusters || (i - PlanarPlace::thrusters) % PlanarPlace::per_thruster < 2;
-    fit.parameters.push_back({names[i], value, error, state, scales});
   }
   return fit;
 }
@@ -240,14 +226,21 @@ void require_excitation(const PlanarFit& fit, const MinimumDistance& best) {
   }
 }
 
-std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters) {
-  std::vector<std::string> names(kVehicleNames.begin(), kVehicleNames.end());
+std::vector<FittedParameter> planar_parameters(const std::vector<std::string>& thrusters) {
+  using enum ParameterKind;
+  std::vector<FittedParameter> parameters{
+      {"surge_inertia", inertia},   {"sway_inertia", inertia},      {"sway_yaw_inertia", coupling},
+      {"yaw_inertia", inertia},     {"surge_linear_drag", size},    {"sway_linear_drag", size},
+      {"yaw_linear_drag", size},    {"surge_quadratic_drag", size}, {"sway_quadratic_drag", size},
+      {"yaw_quadratic_drag", size}, {"surge_force", offset},        {"sway_force", offset},
+      {"yaw_moment", offset}};
   for (const std::string& thruster : thrusters) {
-    for (const char* const name : kThrusterNames) {
-      names.push_back(thruster + "." + name);
-    }
+    parameters.insert(parameters.end(), {{thruster + ".forward", size},
+                                         {thruster + ".reverse", size},
+                                         {thruster + ".angle", angle},
+                                         {thruster + ".arm", arm}});
   }
-  return names;
+  return parameters;
 }
 
 PlanarFit fit_planar(const PlanarRows& rows) {

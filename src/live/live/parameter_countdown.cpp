@@ -28,11 +28,9 @@ log::Dataset without_rows(const Configuration& configuration) {
 
 // Names of parameters and thrusters are checked before the vehicle drives.
 void require_names(const ParameterSettings& settings, const std::vector<std::string>& thrusters) {
-  PlanarFit nameless;
-  for (const std::string& name : planar_parameter_names(thrusters)) {
-    nameless.parameters.push_back({.name = name});
-  }
-  study::wanted_places(nameless, settings.tell);
+  PlanarFit unknown;
+  unknown.parameters = planar_parameters(thrusters);
+  study::wanted_places(unknown, settings.tell);
   for (const auto& [name, value] : settings.thrust) {
     require_name("--thrust", name, "thruster", thrusters);
   }

@@ -6,9 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -27,38 +25,6 @@ namespace {
 
 constexpr double kWrongVehicle = 100.0;  // misfit
 constexpr const char* kLoad = "load";    // a change of all inertias
-
-// What a parameter is, by its name.
-enum class ParameterKind : std::uint8_t {
-  inertia,
-  size,      ///< drags, thrusts, the righting moment
-  coupling,  ///< of two inertias
-  offset,    ///< a force or moment that may be 0
-  arm,
-  angle,
-  curve,  ///< of the thrust curve
-};
-
-ParameterKind kind_of(const std::string& name) {
-  const std::string own = name.substr(name.rfind('.') + 1);
-  const auto is_any = [&](std::initializer_list<const char*> names) {
-    return std::ranges::find(names, own) != names.end();
-  };
-  if (is_any({"sway_yaw_inertia", "low_centre", "forward_centre"})) {
-    return ParameterKind::coupling;
-  }
-  if (is_any({"surge_force", "sway_force", "yaw_moment", "net_weight", "roll_moment",
-              "pitch_moment"})) {
-    return ParameterKind::offset;
-  }
-  if (is_any({"lag", "delay", "dead_band", "volts_exponent"})) {
-    return ParameterKind::curve;
-  }
-  return own == "arm"                ? ParameterKind::arm
-         : own == "angle"            ? ParameterKind::angle
-         : own.ends_with("_inertia") ? ParameterKind::inertia
-                                     : ParameterKind::size;
-}
 
 bool is_told(const FittedParameter& parameter) {
   return parameter.state == ParameterState::identified || parameter.state == ParameterState::known;
@@ -81,15 +47,13 @@ Eigen::MatrixXd root_of_errors(const ParameterFit& fit) {
 }
 
 bool is_size(const FittedParameter& parameter) {
-  const ParameterKind kind = kind_of(parameter.name);
-  return kind == ParameterKind::inertia || kind == ParameterKind::size ||
-         kind == ParameterKind::curve;
+  using enum ParameterKind;
+  return parameter.kind == inertia || parameter.kind == size || parameter.kind == curve;
 }
 
 bool is_usual(const FittedParameter& parameter) {
-  const ParameterKind kind = kind_of(parameter.name);
-  return kind == ParameterKind::inertia || kind == ParameterKind::size ||
-         kind == ParameterKind::arm;
+  using enum ParameterKind;
+  return parameter.kind == inertia || parameter.kind == size || parameter.kind == arm;
 }
 
 std::vector<std::string> words_of(const std::string& name) {
@@ -181,10 +145,9 @@ std::vector<double> change_of(const ParameterFit& fit, const std::string& cause,
   std::vector<double> change(fit.parameters.size(), 0.0);
   for (std::size_t i = 0; i < change.size(); ++i) {
     const FittedParameter& parameter = fit.parameters[i];
-    const ParameterKind kind = kind_of(parameter.name);
-    const bool is_wanted = cause == kLoad
-                               ? kind == ParameterKind::inertia || kind == ParameterKind::coupling
-                               : is_size(parameter) && has_words(parameter.name, cause);
+    const bool is_wanted = cause == kLoad ? parameter.kind == ParameterKind::inertia ||
+                                                parameter.kind == ParameterKind::coupling
+                                          : is_size(parameter) && has_words(parameter.name, cause);
     change[i] = is_wanted ? share * fit.parameters[i].value : 0.0;
   }
   if (std::ranges::all_of(change, [](double value) { return value == 0.0; })) {
@@ -201,7 +164,7 @@ double size_of(const ParameterFit& fit, const FittedParameter& parameter) {
     return std::ranges::find(fit.parameters, name, &FittedParameter::name)->value;
   };
   const std::string& name = parameter.name;
-  switch (kind_of(name)) {
+  switch (parameter.kind) {
     case ParameterKind::angle:
       return 1.0;
     case ParameterKind::coupling:
