@@ -11,8 +11,8 @@
 #include <tuple>
 #include <utility>
 
-#include "core/angle.hpp"
 #include "core/quantile.hpp"
+#include "kelpie/motion/unit.hpp"
 #include "log/tuning.hpp"
 #include "motion/states.hpp"
 
@@ -21,24 +21,23 @@ namespace {
 
 constexpr const auto& kLimits = kTuning.plausibility;
 
-// A factor between a target and the slope of its velocity, and the unit of one of the two that
-// explains the factor.
-struct KnownFactor {
-  double ratio;
-  const char* what;     // {0}: the velocity, {1}: the target
-  const char* options;  // for --units
+// A unit of a target or of its velocity, which explains a factor between the target and the slope
+// of the velocity.
+struct LikelyUnit {
+  const char* unit;
+  bool is_of_target;
+  const char* what;  // {0}: the velocity, {1}: the target
 };
 
-constexpr double kGravity = 9.80665;
-constexpr std::array kUnits = std::to_array<KnownFactor>({
-    {kRadPerDegree, "{0} is in degrees per second, {1} in rad/s²", "{0}=deg/s"},
-    {1.0 / kRadPerDegree, "{1} is in degrees per second squared, {0} in rad/s", "{1}=deg/s^2"},
-    {0.01, "{0} is in cm/s, {1} in m/s²", "{0}=cm/s"},
-    {100.0, "{1} is in cm/s², {0} in m/s", "{1}=cm/s^2"},
-    {1e-3, "{0} is in mm/s, {1} in m/s²", "{0}=mm/s"},
-    {1.0 / kGravity, "{1} is in g, {0} in m/s", "{1}=g"},
-    {1.0 / 3.6, "{0} is in km/h, {1} in m/s²", "{0}=km/h"},
-    {1852.0 / 3600.0, "{0} is in knots, {1} in m/s²", "{0}=knots"},
+constexpr std::array kUnits = std::to_array<LikelyUnit>({
+    {"deg/s", false, "{0} is in degrees per second, {1} in rad/s²"},
+    {"deg/s^2", true, "{1} is in degrees per second squared, {0} in rad/s"},
+    {"cm/s", false, "{0} is in cm/s, {1} in m/s²"},
+    {"cm/s^2", true, "{1} is in cm/s², {0} in m/s"},
+    {"mm/s", false, "{0} is in mm/s, {1} in m/s²"},
+    {"g", true, "{1} is in g, {0} in m/s"},
+    {"km/h", false, "{0} is in km/h, {1} in m/s²"},
+    {"knots", false, "{0} is in knots, {1} in m/s²"},
 });
 
 // A unit of time stamps, which all targets share.
@@ -236,13 +235,13 @@ std::optional<Mistake> unit_mistake(const TargetCheck& check) {
   const double ratio = std::abs(check.ratio);
   const std::string how_large = fmt::format("{} is {:.3g} times as large as the slope of {}",
                                             check.target, ratio, check.velocity);
-  for (const KnownFactor& unit : kUnits) {
-    if (near(ratio, unit.ratio)) {
-      const auto filled = [&](const char* text) {
-        return fmt::format(fmt::runtime(text), check.velocity, check.target);
-      };
-      return Mistake{fmt::format("{} ({})", filled(unit.what), how_large),
-                     fmt::format("--units {} converts", filled(unit.options))};
+  for (const LikelyUnit& likely : kUnits) {
+    const double in_si = Unit::parse(likely.unit).in_si().second;
+    if (near(ratio, likely.is_of_target ? 1.0 / in_si : in_si)) {
+      const std::string what = fmt::format(fmt::runtime(likely.what), check.velocity, check.target);
+      return Mistake{fmt::format("{} ({})", what, how_large),
+                     fmt::format("--units {}={} converts",
+                                 likely.is_of_target ? check.target : check.velocity, likely.unit)};
     }
   }
   // Filters of a vehicle at rest shrink targets, too.
