@@ -130,7 +130,7 @@ std::vector<Gain> gains(const study::TuneResult& result) {
   for (std::size_t log = 0; log < result.logs.size(); ++log) {
     for (std::size_t axis = 0; axis < result.axes.size(); ++axis) {
       const study::TuneScores& scores = result.axes[axis].logs[log];
-      list.push_back({log, axis, scores.tuned - scores.base});
+      list.push_back({log, axis, scores.gain()});
     }
   }
   std::ranges::stable_sort(list, [](const Gain& a, const Gain& b) {
@@ -293,27 +293,21 @@ std::string name_of(const TrialResult& one, const study::TuneResult& result, std
   return different.empty() ? nearest : nearest + " with " + join_text(different, ", ");
 }
 
-// The gain over the settings at the start on all rows, NaN where one is not judged; 0 where the
-// search kept these settings.
-double gain_of(const study::TunedAxis& axis) {
-  return axis.all.tuned - axis.all.base;
-}
-
 }  // namespace
 
 bool any_gain(const study::TuneResult& result) {
   return std::ranges::any_of(result.axes,
-                             [](const study::TunedAxis& axis) { return gain_of(axis) > 0.0; });
+                             [](const study::TunedAxis& axis) { return axis.all.gain() > 0.0; });
 }
 
 std::string gain_sentence(const study::TuneResult& result) {
   std::vector<std::string> gained;
   bool judged = false;
   for (const study::TunedAxis& axis : result.axes) {
-    judged = judged || std::isfinite(gain_of(axis));
-    if (gain_of(axis) > 0.0) {
+    judged = judged || std::isfinite(axis.all.gain());
+    if (axis.all.gain() > 0.0) {
       gained.push_back(fmt::format("{} by {}", chart::shortened(axis.name, chart::kLongestName),
-                                   chart::decimal(gain_of(axis))));
+                                   chart::decimal(axis.all.gain())));
     }
   }
   if (!judged) {
@@ -371,7 +365,7 @@ chart::TextTable gain_table(const study::TuneResult& result) {
     const TrialResult* const chosen = chosen_trial(result, i);
     table.rows.push_back({chart::shortened(axis.name, chart::kLongestName),
                           chart::decimal(axis.all.base), chart::decimal(axis.all.tuned),
-                          chart::decimal(gain_of(axis)), chart::decimal(axis.all.least_squares),
+                          chart::decimal(axis.all.gain()), chart::decimal(axis.all.least_squares),
                           chosen == nullptr ? "–" : chart::significant(chosen->iterations_per_row),
                           chosen == nullptr ? "–" : name_of(*chosen, result, i)});
   }

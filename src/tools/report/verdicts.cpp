@@ -95,11 +95,10 @@ std::string tune_verdict(const study::TuneResult& result) {
                          .whole = true};
   for (std::size_t i = 0; i < result.axes.size(); ++i) {
     const study::TunedAxis& axis = result.axes[i];
-    const double gain = axis.all.tuned - axis.all.base;
     const double work = work_of(result, axis.name, study::settings_of(result.tuned, i));
     table.rows.push_back({chart::shortened(axis.name, chart::kLongestName),
                           chart::decimal(axis.all.base), chart::decimal(axis.all.tuned),
-                          chart::decimal(gain), chart::decimal(axis.all.least_squares),
+                          chart::decimal(axis.all.gain()), chart::decimal(axis.all.least_squares),
                           std::isfinite(work) ? chart::significant(work) : "–"});
   }
   std::string text = fmt::format("Searched settings in {} evaluations on {} {}\n",

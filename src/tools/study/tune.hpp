@@ -43,6 +43,8 @@ struct TuneScores {
   std::vector<double> references;   ///< of each reference
   double least_squares = kUnknown;  ///< baseline
   double mean = kUnknown;
+
+  double gain() const { return tuned - base; }  ///< 0 where the search kept the base.
 };
 
 /// Outcome of one axis.
