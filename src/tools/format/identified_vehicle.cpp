@@ -203,16 +203,12 @@ template <typename Drive>
 study::RecordedDrive of_chosen_rows(const log::Dataset& data, const study::Split& split,
                                     std::optional<int> only, Drive drive_of_rows) {
   const int wanted = data.configurations[study::training_rows(data, split, only).front()];
-  const auto of_configuration = [&](std::vector<std::size_t> rows) {
-    std::erase_if(rows, [&](std::size_t row) { return data.configurations[row] != wanted; });
-    return rows;
-  };
-  study::RecordedDrive drive = drive_of_rows(of_configuration(split.held_out));
+  study::RecordedDrive drive = drive_of_rows(study::of_configuration(data, split.held_out, wanted));
   drive.rows_text = "held-out rows";
   if (!has_minute(drive)) {
     std::vector<std::size_t> all(data.rows());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    drive = drive_of_rows(of_configuration(std::move(all)));
+    drive = drive_of_rows(study::of_configuration(data, std::move(all), wanted));
     drive.rows_text = "all rows, those of the identification among them";
   }
   return drive;

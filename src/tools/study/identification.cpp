@@ -123,14 +123,6 @@ void require_accelerations(const log::Dataset& data, const PlanarColumns& column
   }
 }
 
-std::vector<std::size_t> of_configuration(const log::Dataset& data,
-                                          const std::vector<std::size_t>& rows, int wanted) {
-  std::vector<std::size_t> picked;
-  std::ranges::copy_if(rows, std::back_inserter(picked),
-                       [&](std::size_t row) { return data.configurations[row] == wanted; });
-  return picked;
-}
-
 HeldOutFit judge(const log::Dataset& data, const std::vector<std::size_t>& rows,
                  const PlanarColumns& columns, const PlanarFit& fit) {
   HeldOutFit held_out(kPlanarAxes);
@@ -272,12 +264,21 @@ std::string fins_text(const std::vector<std::string>& fins) {
 }
 
 Identification identification_of(const log::Dataset& data, const Split& split,
-                                 std::size_t training_rows) {
+                                 std::size_t training_rows, std::span<const std::size_t> targets,
+                                 std::span<const double> commands, std::size_t thrusters) {
   Identification found;
   found.source = data.source;
   found.split = split.label;
   found.training_rows = training_rows;
   found.fins = fins_of(data);
+  for (const std::size_t target : targets) {
+    found.targets.push_back(data.target_names[target]);
+  }
+  found.greatest_speeds.assign(thrusters, 0.0);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    double& greatest = found.greatest_speeds[i % thrusters];
+    greatest = std::max(greatest, std::abs(commands[i]));
+  }
   return found;
 }
 
@@ -294,8 +295,9 @@ Identification identify(const log::Dataset& data, const Split& split, const Plan
                         const KnownThrust& known, std::optional<int> only, bool accepts) {
   const std::vector<std::size_t> training = training_rows(data, split, only);
   const int wanted = data.configurations[training.front()];
-  Identification found = identification_of(data, split, training.size());
   const PlanarRows rows = planar_rows(data, training, columns);
+  Identification found = identification_of(data, split, training.size(), columns.targets,
+                                           rows.speeds, columns.thrusters.size());
   if (data.poses.empty()) {
     if (!accepts) {
       require_accelerations(data, columns, rows, training);
@@ -307,22 +309,14 @@ Identification identify(const log::Dataset& data, const Split& split, const Plan
     found.of_poses = true;
   }
   require_numbers(data, found.planar);
-  for (const std::size_t target : columns.targets) {
-    found.targets.push_back(data.target_names[target]);
-  }
   if (data.poses.empty()) {  // else held-out accelerations are those of noise, above all
     found.held_out =
         judge(data, of_configuration(data, split.held_out, wanted), columns, found.planar);
   }
   give_scale(known, found);
-  for (std::size_t i = 0; i < columns.thrusters.size(); ++i) {
-    const auto unit = data.units.find(rows.thrusters[i]);
+  for (const std::string& thruster : rows.thrusters) {
+    const auto unit = data.units.find(thruster);
     found.speed_units.push_back(unit == data.units.end() ? "" : unit->second.text());
-    double greatest = 0.0;
-    for (std::size_t row = 0; row < rows.rows(); ++row) {
-      greatest = std::max(greatest, std::abs(rows.speed(row)[i]));
-    }
-    found.greatest_speeds.push_back(greatest);
   }
   return found;
 }

@@ -99,9 +99,11 @@ PlanarRows planar_rows(const log::Dataset& data, const std::vector<std::size_t>&
 Identification identify(const log::Dataset& data, const Split& split, const PlanarColumns& columns,
                         const KnownThrust& known, std::optional<int> only, bool accepts = false);
 
-/// The head of an identification: log, split and number of training rows.
+/// The head of an identification: log, split, names of targets, and the greatest of the commands
+/// (training rows × thrusters).
 Identification identification_of(const log::Dataset& data, const Split& split,
-                                 std::size_t training_rows);
+                                 std::size_t training_rows, std::span<const std::size_t> targets,
+                                 std::span<const double> commands, std::size_t thrusters);
 
 /// Gives forces their unit, as far as known (docs/howto/identify.md, "The scale").
 void give_scale(const KnownThrust& known, Identification& found);

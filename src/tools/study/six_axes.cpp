@@ -234,15 +234,12 @@ Identification identify_six_axes(const log::Dataset& data, const Split& split,
                                  double neutral, const KnownThrust& known, std::optional<int> only,
                                  const SixAxisSettings& options) {
   const std::vector<std::size_t> training = training_rows(data, split, only);
-  Identification found = identification_of(data, split, training.size());
   const SixAxisRows rows = six_axis_rows(data, training, columns, vehicle, frame, neutral);
+  Identification found = identification_of(data, split, training.size(), columns.targets,
+                                           rows.commands, columns.thrusters.size());
   found.six = of_log(data, [&] { return fit_six_axes(rows, options); });
-  for (const std::size_t target : columns.targets) {
-    found.targets.push_back(data.target_names[target]);
-  }
-  std::vector<std::size_t> held_out = split.held_out;
-  const int wanted = data.configurations[training.front()];
-  std::erase_if(held_out, [&](std::size_t row) { return data.configurations[row] != wanted; });
+  const std::vector<std::size_t> held_out =
+      of_configuration(data, split.held_out, data.configurations[training.front()]);
   judge_six_axes(data, held_out, columns,
                  six_axis_rows(data, held_out, columns, vehicle, frame, neutral), found);
   // Targets are of the log's frame.
@@ -256,13 +253,6 @@ Identification identify_six_axes(const log::Dataset& data, const Split& split,
   }
   found.held_out.score();
   give_scale(known, found);
-  for (std::size_t i = 0; i < columns.thrusters.size(); ++i) {
-    double greatest = 0.0;
-    for (std::size_t row = 0; row < rows.rows(); ++row) {
-      greatest = std::max(greatest, std::abs(rows.commands[row * columns.thrusters.size() + i]));
-    }
-    found.greatest_speeds.push_back(greatest);
-  }
   return found;
 }
 

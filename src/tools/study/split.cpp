@@ -201,18 +201,21 @@ Split make_split(const log::Dataset& data, const SplitSettings& wanted) {
   return split;
 }
 
+std::vector<std::size_t> of_configuration(const log::Dataset& data, std::vector<std::size_t> rows,
+                                          int wanted) {
+  std::erase_if(rows, [&](std::size_t row) { return data.configurations[row] != wanted; });
+  return rows;
+}
+
 std::vector<std::size_t> training_rows(const log::Dataset& data, const Split& split,
                                        std::optional<int> only) {
   const int wanted = only.value_or(data.configurations[split.training.front()]);
-  std::set<int> known;
-  Rows rows;
-  for (const std::size_t row : split.training) {
-    known.insert(data.configurations[row]);
-    if (data.configurations[row] == wanted) {
-      rows.push_back(row);
-    }
-  }
+  Rows rows = of_configuration(data, split.training, wanted);
   if (rows.empty()) {
+    std::set<int> known;
+    for (const std::size_t row : split.training) {
+      known.insert(data.configurations[row]);
+    }
     refuse("--only", "",
            fmt::format("{} has no configuration {}; it has {}", data.source, wanted,
                        fmt::join(known, ", ")));

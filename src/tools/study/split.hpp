@@ -54,6 +54,10 @@ std::string to_string(SplitKind kind);  ///< In the form of parse_split().
 /// rows. Requires rows marked by a column where the kind is `column`.
 Split make_split(const log::Dataset& data, const SplitSettings& wanted);
 
+/// Those of the rows that are of this configuration.
+std::vector<std::size_t> of_configuration(const log::Dataset& data, std::vector<std::size_t> rows,
+                                          int wanted);
+
 /// The training rows of the configuration `only` (default: of the first training row). Throws
 /// InputError (`--only`) without such rows, naming the configurations of the log.
 std::vector<std::size_t> training_rows(const log::Dataset& data, const Split& split,
