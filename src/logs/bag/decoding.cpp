@@ -150,7 +150,8 @@ bool StampReader::overflows() const {
 
 void StampReader::place(std::int64_t near_ns) {
   Part& one = parts_.front();
-  const auto left = static_cast<double>(near_ns / one.part.unit_ns - one.value);
+  const std::int64_t count = near_ns / one.part.unit_ns;
+  const auto left = static_cast<double>(count - one.value);
   const double overflows = std::round(left / static_cast<double>(one.wraps_at));
   one.wrapped = one.wraps_at * static_cast<std::int64_t>(std::fmax(overflows, 0.0));
   is_placed_ = true;

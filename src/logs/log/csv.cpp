@@ -296,9 +296,11 @@ void name_columns(Table& table, std::span<const std::string_view> cells, std::si
       refuse_csv(table.source, line, "two columns have this name; rename one", shown_cell(whole));
     }
     NameAndUnit known = name_and_unit(whole);
-    const bool is_clear = short_names.count(known.name) == 1;
-    table.names.push_back(is_clear ? std::move(known.name) : whole);
-    table.units.push_back(is_clear ? std::move(known.unit) : "");
+    if (short_names.count(known.name) > 1) {
+      known = {whole, ""};
+    }
+    table.names.push_back(std::move(known.name));
+    table.units.push_back(std::move(known.unit));
   }
   table.columns.resize(cells.size());
   table.texts.resize(cells.size());
@@ -375,8 +377,9 @@ class TableBuilder {
     if (table_.names.empty()) {
       name_columns(table_, cells, number);
       header_line_ = number;
-    } else if (table_.rows() > 0 || has_units_row_ ||
-               !(has_units_row_ = take_units(table_, cells))) {
+    } else if (table_.rows() == 0 && !has_units_row_ && take_units(table_, cells)) {
+      has_units_row_ = true;
+    } else {
       add_row(cells, number);
     }
   }
