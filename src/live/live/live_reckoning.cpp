@@ -209,6 +209,11 @@ std::optional<ReckonedSample> LiveReckoning::update(const Receiver& receiver,
   if (is_new && has_commands) {
     note_faults();
   }
+  return sample(receiver, received_ns, output);
+}
+
+std::optional<ReckonedSample> LiveReckoning::sample(const Receiver& receiver,
+                                                    std::int64_t received_ns, Output& output) {
   note_loss(output);
   note_outage(output);
   if (is_lost_) {
@@ -217,7 +222,7 @@ std::optional<ReckonedSample> LiveReckoning::update(const Receiver& receiver,
   return ReckonedSample{.stamp_ns = received_ns,
                         .data_ns = *receiver.origin_ns() + nanoseconds(t_),
                         .names = names_,
-                        .reckoning = *reckoning_};
+                        .reckoning = *present()};
 }
 
 // From a row of poses until there is the next one: half a window, and what the stream waits.
@@ -296,15 +301,7 @@ std::optional<ReckonedSample> LiveReckoning::update_present(const Receiver& rece
     return std::nullopt;
   }
   advance(receiver, t_);
-  note_loss(output);
-  note_outage(output);
-  if (is_lost_) {
-    return std::nullopt;
-  }
-  return ReckonedSample{.stamp_ns = received_ns,
-                        .data_ns = *receiver.origin_ns() + nanoseconds(t_),
-                        .names = names_,
-                        .reckoning = *present_};
+  return sample(receiver, received_ns, output);
 }
 
 bool LiveReckoning::fill_late_inputs(std::span<double> x) const {

@@ -72,6 +72,8 @@ class LiveReckoning {
  private:
   bool acts_at_once() const;
   bool take_velocities(const Receiver& receiver);
+  std::optional<ReckonedSample> sample(const Receiver& receiver, std::int64_t received_ns,
+                                       Output& output);
   std::optional<ReckonedSample> update_present(const Receiver& receiver, std::int64_t received_ns,
                                                Output& output);
   void advance(const Receiver& receiver, double t);
