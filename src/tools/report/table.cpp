@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "chart/wording.hpp"
@@ -95,11 +94,8 @@ std::string axes_table(const study::StreamResult& result) {
     add_trouble(table.notes, axis);
     add_changes(table.notes, axis);
   }
-  for (const std::string& line : study::diagnosis_lines(result)) {
+  for (const std::string& line : study::finding_lines(result)) {
     table.notes.push_back(line);
-  }
-  if (const std::string left = study::left_text(result); !left.empty()) {
-    table.notes.push_back("left at the end: " + left);
   }
   if (result.memory_bytes > 0) {
     table.notes.push_back(fmt::format("memory: {} for {} ax{}s",

@@ -214,10 +214,7 @@ chart::TextTable quality_table(const study::StreamResult& result) {
 }
 
 std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
-  std::vector<std::string> lines = study::diagnosis_lines(result);
-  if (const std::string left = study::left_text(result); !left.empty()) {
-    lines.push_back("left at the end: " + left);
-  }
+  std::vector<std::string> lines = study::finding_lines(result);
   std::ranges::move(model_lines(result), std::back_inserter(lines));
   if (lines.empty()) {
     lines.push_back("no change of the vehicle was found" +

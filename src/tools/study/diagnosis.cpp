@@ -111,4 +111,12 @@ std::string left_text(const StreamResult& result) {
   return result.diagnosis.findings.empty() ? "" : authority_text(result);
 }
 
+std::vector<std::string> finding_lines(const StreamResult& result) {
+  std::vector<std::string> lines = diagnosis_lines(result);
+  if (const std::string left = left_text(result); !left.empty()) {
+    lines.push_back("left at the end: " + left);
+  }
+  return lines;
+}
+
 }  // namespace kelpie::study

@@ -37,4 +37,7 @@ std::vector<std::string> diagnosis_lines(const StreamResult& result);
 /// What the thrusters can do after findings: authority_text(); empty without a finding.
 std::string left_text(const StreamResult& result);
 
+/// diagnosis_lines() and left_text(), a line each.
+std::vector<std::string> finding_lines(const StreamResult& result);
+
 }  // namespace kelpie::study
