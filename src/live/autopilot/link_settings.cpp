@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "autopilot/link_settings.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <limits>
@@ -132,12 +131,9 @@ LinkSettings read_link_settings(const file::TomlNode& table) {
   identity("component_id", settings.component_id);
   if (table.has("key")) {
     const file::TomlNode key = table["key"];
-    try {
-      const std::filesystem::path folder = std::filesystem::path(key.place().file).parent_path();
-      settings.key = read_signing_key(folder / key.text());
-    } catch (const InputError& error) {
-      key.refuse(error.what());
-    }
+    const std::filesystem::path folder = std::filesystem::path(key.place().file).parent_path();
+    const std::filesystem::path place = folder / key.text();
+    settings.key = file::located(key, [&] { return read_signing_key(place); });
   }
   if (table.has("velocity")) {
     settings.velocity = velocity_message_of(table["velocity"]);

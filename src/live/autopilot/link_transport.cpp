@@ -389,12 +389,8 @@ std::unique_ptr<live::Transport> open_link(const live::Configuration& configurat
         "VISION_POSITION_DELTA tells the way ahead, to the right and down, which takes surge, sway "
         "and heave among the velocities of the model; ODOMETRY can leave one open");
   }
-  std::unique_ptr<ByteLine> line;
-  try {
-    line = open_line(settings.connection);
-  } catch (const InputError& error) {
-    (table.has("connection") ? table["connection"] : table).refuse(error.what());
-  }
+  auto line = file::located(table.has("connection") ? table["connection"] : table,
+                            [&] { return open_line(settings.connection); });
   return std::make_unique<LinkTransport>(configuration, settings, std::move(line));
 }
 

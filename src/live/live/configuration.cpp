@@ -77,22 +77,14 @@ void endpoint(const file::TomlNode& value, std::string& text) {
   text = value.type() == file::TomlNode::Type::text
              ? value.text()
              : number_text(value.number("a port, or \"host:port\""));
-  try {
-    parse_endpoint(text, "");
-  } catch (const InputError& error) {
-    value.refuse(error.what());
-  }
+  file::located(value, [&] { return parse_endpoint(text, ""); });
 }
 
 // {"/dvl:velocity_valid" = 1}: the least value of a valid message.
 void read_validity(const file::TomlNode& table, std::map<std::string, double>& valid) {
   for (const file::TomlNode& value :
        table.members("a table of fields, as in {\"/dvl:velocity_valid\" = 1}")) {
-    try {
-      bag::parse_column(value.key());
-    } catch (const InputError& error) {
-      value.refuse(error.what());
-    }
+    file::located(value, [&] { return bag::parse_column(value.key()); });
     valid[value.key()] = value.number("the least value of a valid message, a number");
   }
 }

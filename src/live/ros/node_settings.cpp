@@ -14,16 +14,6 @@
 namespace kelpie::ros {
 namespace {
 
-// Runs `read`; its errors name the place of `value`.
-template <typename Read>
-auto located(const file::TomlNode& value, const Read& read) {
-  try {
-    return read();
-  } catch (const InputError& error) {
-    value.refuse(error.what());
-  }
-}
-
 std::uint32_t domain_of(const file::TomlNode& value) {
   const std::uint64_t domain = value.count();
   if (domain > dds::Network::kMostDomain) {
@@ -91,7 +81,7 @@ dds::Network read_network(const file::TomlNode& table) {
   }
   if (table.has("peers")) {
     network.peers = file::texts_of(table["peers"], "a list of addresses, as in [\"192.168.2.2\"]");
-    located(table["peers"], [&] { return dds::cyclone_configuration(network); });
+    file::located(table["peers"], [&] { return dds::cyclone_configuration(network); });
   }
   return network;
 }
@@ -102,10 +92,10 @@ dds::TopicNames read_names(const file::TomlNode& table, const std::string& node)
   };
   const auto names = [&](const char* key, const std::vector<std::string>& remappings) {
     const auto make = [&] { return dds::TopicNames(text("namespace"), node, remappings); };
-    return table.has(key) ? located(table[key], make) : make();
+    return table.has(key) ? file::located(table[key], make) : make();
   };
   if (table.has("node")) {
-    located(table["node"], [&] { return dds::TopicNames("", node, {}); });
+    file::located(table["node"], [&] { return dds::TopicNames("", node, {}); });
   }
   names("namespace", {});
   return names("remap", table.has("remap")

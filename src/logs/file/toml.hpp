@@ -68,6 +68,16 @@ class TomlNode {
   std::shared_ptr<const Value> value_;
 };
 
+/// Returns what `read` returns; an InputError of `read` is told with the place of `value`.
+template <typename Read>
+auto located(const TomlNode& value, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    value.refuse(error.what());
+  }
+}
+
 /// The texts of a list, at least one.
 std::vector<std::string> texts_of(const TomlNode& list, const std::string& kind);
 

@@ -46,11 +46,7 @@ std::array<std::string, 3> three_names(const file::TomlNode& value) {
 
 Frame frame_of(const file::TomlNode& value) {
   const std::string name = value.text("a frame: FLU, FRD, ENU or NED");
-  try {
-    return frame_from(name);
-  } catch (const InputError& error) {
-    value.refuse(error.what());
-  }
+  return file::located(value, [&] { return frame_from(name); });
 }
 
 [[noreturn]] void refuse(const LogConfig& config, const std::string& key,

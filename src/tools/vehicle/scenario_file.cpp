@@ -21,15 +21,11 @@ double number_or(const file::TomlNode& table, const std::string& key, double oth
   return table.has(key) ? table[key].number() : otherwise;
 }
 
-// What `make` turns the text into; what it throws is told with the value's place.
+// What `make` turns the text into.
 template <typename Make>
 auto choice(const file::TomlNode& value, Make make) {
   const std::string text = value.text();
-  try {
-    return make(text);
-  } catch (const InputError& error) {
-    value.refuse(error.what());
-  }
+  return file::located(value, [&] { return make(text); });
 }
 
 void read_body(const file::TomlNode& root, VehicleParameters& vehicle) {
