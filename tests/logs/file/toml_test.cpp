@@ -99,6 +99,16 @@ TEST_F(Toml, AnErrorFoundLaterGetsTheLineOfItsKeyOrOfWhatEnclosesIt) {
   EXPECT_EQ(checked("m[1].lag"), "a.toml:3: m[1].lag: is too fast");
 }
 
+TEST_F(Toml, AnErrorAboutAValueGetsThePlaceOfTheValue) {
+  EXPECT_EQ(refusal("[m]\nv = 1\n",
+                    [](const TomlNode& root) {
+                      file::located(root["m"]["v"], [] { throw InputError("is too fast"); });
+                    }),
+            "a.toml:2: m.v: is too fast");
+  const TomlNode root = read("v = 1\n");
+  EXPECT_EQ(file::located(root["v"], [&] { return root["v"].number(); }), 1.0);
+}
+
 TEST_F(Toml, KeysOfVeryManyPartsAreRefusedAndDotsElsewhereAreNot) {
   std::string dots;
   for (int i = 0; i < 50'000; ++i) {
