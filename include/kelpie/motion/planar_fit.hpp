@@ -35,12 +35,11 @@ enum class ParameterKind : std::uint8_t {
 /// Estimate of one parameter.
 struct FittedParameter {
   std::string name;  ///< "sway_inertia", "th1.forward"
-  ParameterKind kind = ParameterKind::size;
   double value = 0.0;
   double error = 0.0;  ///< standard error
   ParameterState state = ParameterState::identified;
-
-  bool scales() const { return kind < ParameterKind::arm; }  ///< With the unit of forces.
+  bool scales = true;  ///< proportional to the scale of forces; angles, arms and times are not
+  ParameterKind kind = ParameterKind::size;
 };
 
 /// Parameters of an equation of motion, estimated from a log.
@@ -153,6 +152,8 @@ struct PlanarPlace {
 /// Names and kinds of the parameters of a vehicle with these thrusters, in the order of
 /// PlanarPlace.
 std::vector<FittedParameter> planar_parameters(const std::vector<std::string>& thrusters);
+/// The names of planar_parameters().
+std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters);
 
 /// Parameters of Fossen's equation in the plane, estimated from a log.
 struct PlanarFit : ParameterFit {

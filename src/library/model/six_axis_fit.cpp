@@ -17,6 +17,7 @@
 #include "model/six_axis_structure.hpp"
 #include "model/six_axis_windows.hpp"
 #include "motion/minimum_distance.hpp"
+#include "motion/planar_estimate.hpp"
 #include "motion/tuning.hpp"
 #include "motion/weak_form.hpp"
 
@@ -26,28 +27,28 @@ namespace {
 // Names and kinds, in the order of SixAxisPlace.
 std::vector<FittedParameter> six_axis_parameters(const std::vector<PlacedThruster>& thrusters) {
   using enum ParameterKind;
-  std::vector<FittedParameter> parameters;
+  std::vector<std::pair<std::string, ParameterKind>> named;
   const auto add_axes = [&](const char* name, ParameterKind kind) {
     for (const char* const axis : {"surge", "sway", "heave", "roll", "pitch", "yaw"}) {
-      parameters.push_back({axis + std::string(name), kind});
+      named.push_back({axis + std::string(name), kind});
     }
   };
   add_axes("_inertia", inertia);
-  parameters.insert(parameters.end(), {{"low_centre", coupling}, {"forward_centre", coupling}});
+  named.insert(named.end(), {{"low_centre", coupling}, {"forward_centre", coupling}});
   add_axes("_linear_drag", size);
   add_axes("_quadratic_drag", size);
-  parameters.insert(parameters.end(), {{"net_weight", offset},
-                                       {"roll_moment", offset},
-                                       {"pitch_moment", offset},
-                                       {"righting_moment", size}});
+  named.insert(named.end(), {{"net_weight", offset},
+                             {"roll_moment", offset},
+                             {"pitch_moment", offset},
+                             {"righting_moment", size}});
   for (const PlacedThruster& thruster : thrusters) {
-    parameters.push_back({thruster.name + ".forward", size});
-    parameters.push_back({thruster.name + ".reverse", size});
+    named.push_back({thruster.name + ".forward", size});
+    named.push_back({thruster.name + ".reverse", size});
   }
   for (const char* const name : {"lag", "delay", "dead_band", "volts_exponent"}) {
-    parameters.push_back({std::string("thrusters.") + name, curve});
+    named.push_back({std::string("thrusters.") + name, curve});
   }
-  return parameters;
+  return unknown_parameters(named);
 }
 
 // Gaps between stretches are no steps. 1 s without a step.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kelpie/motion/planar_fit.hpp"
@@ -14,6 +15,10 @@ namespace kelpie {
 /// Places of the parameters that rows with this gram matrix of terms may tell: all but the surge
 /// inertia and the coefficients of directions in which no thruster ran.
 std::vector<Eigen::Index> sought_places(const Eigen::MatrixXd& gram, Eigen::Index parameters);
+
+/// Parameters of these names and kinds, not estimated so far.
+std::vector<FittedParameter> unknown_parameters(
+    const std::vector<std::pair<std::string, ParameterKind>>& named);
 
 /// A fit with estimates, errors and states of all parameters. `weak`: accelerations and terms, by
 /// which a parameter's error is judged. `errors`: covariance of best.free, by chance alone.

@@ -226,21 +226,38 @@ void require_excitation(const PlanarFit& fit, const MinimumDistance& best) {
   }
 }
 
+std::vector<FittedParameter> unknown_parameters(
+    const std::vector<std::pair<std::string, ParameterKind>>& named) {
+  std::vector<FittedParameter> parameters;
+  for (const auto& [name, kind] : named) {
+    parameters.push_back({.name = name, .scales = kind < ParameterKind::arm, .kind = kind});
+  }
+  return parameters;
+}
+
 std::vector<FittedParameter> planar_parameters(const std::vector<std::string>& thrusters) {
   using enum ParameterKind;
-  std::vector<FittedParameter> parameters{
+  std::vector<std::pair<std::string, ParameterKind>> named{
       {"surge_inertia", inertia},   {"sway_inertia", inertia},      {"sway_yaw_inertia", coupling},
       {"yaw_inertia", inertia},     {"surge_linear_drag", size},    {"sway_linear_drag", size},
       {"yaw_linear_drag", size},    {"surge_quadratic_drag", size}, {"sway_quadratic_drag", size},
       {"yaw_quadratic_drag", size}, {"surge_force", offset},        {"sway_force", offset},
       {"yaw_moment", offset}};
   for (const std::string& thruster : thrusters) {
-    parameters.insert(parameters.end(), {{thruster + ".forward", size},
-                                         {thruster + ".reverse", size},
-                                         {thruster + ".angle", angle},
-                                         {thruster + ".arm", arm}});
+    named.insert(named.end(), {{thruster + ".forward", size},
+                               {thruster + ".reverse", size},
+                               {thruster + ".angle", angle},
+                               {thruster + ".arm", arm}});
   }
-  return parameters;
+  return unknown_parameters(named);
+}
+
+std::vector<std::string> planar_parameter_names(const std::vector<std::string>& thrusters) {
+  std::vector<std::string> names;
+  for (const FittedParameter& parameter : planar_parameters(thrusters)) {
+    names.push_back(parameter.name);
+  }
+  return names;
 }
 
 PlanarFit fit_planar(const PlanarRows& rows) {

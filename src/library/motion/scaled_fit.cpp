@@ -35,7 +35,7 @@ void apply_scale(ParameterFit& fit, double factor, const Eigen::VectorXd& slope,
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(n);  // the values, where they have a scale
   for (Eigen::Index i = 0; i < n; ++i) {
     FittedParameter& parameter = fit.parameters[static_cast<std::size_t>(i)];
-    if (parameter.scales()) {
+    if (parameter.scales) {
       parameter.value *= factor;
       moved(i) = parameter.value;
       jacobian.row(i) *= factor;
