@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <utility>
 
 #include "core/quantile.hpp"
 #include "jobs/run_all.hpp"

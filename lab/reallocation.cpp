@@ -2,7 +2,6 @@
 #include "lab/reallocation.hpp"
 
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "vehicle/parameters.hpp"

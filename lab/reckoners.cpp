@@ -2,7 +2,6 @@
 #include "lab/reckoners.hpp"
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <map>
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "core/eigen.hpp"
 #include "learner/learner_state.hpp"

@@ -2,7 +2,6 @@
 #include "learner/past_models.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "learner/sample_map.hpp"

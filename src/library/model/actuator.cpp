@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <utility>
 
 #include "core/angle.hpp"
 #include "core/seconds.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/model/open_loop.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <string>
 

@@ -2,7 +2,6 @@
 #include "motion/coefficient_monitor.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <limits>
 #include <span>
-#include <utility>
 
 #include "core/angle.hpp"
 #include "core/eigen.hpp"

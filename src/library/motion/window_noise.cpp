@@ -2,7 +2,6 @@
 #include "motion/window_noise.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "autopilot/link_transport.hpp"

@@ -3,8 +3,6 @@
 
 #include <dds/dds.h>
 
-#include <string_view>
-
 namespace kelpie::dds {
 
 QosPointer qos_of(const Quality& quality) {

@@ -2,7 +2,6 @@
 #include "live/alignment.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/alignment.hpp"

@@ -2,8 +2,6 @@
 #include "live/checkpoint.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "file/json.hpp"

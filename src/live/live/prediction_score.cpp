@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "core/quantile.hpp"
 #include "kelpie/motion/diagnosis.hpp"

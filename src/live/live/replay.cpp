@@ -2,7 +2,6 @@
 #include "live/replay.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <thread>
 

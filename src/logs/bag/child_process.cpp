@@ -17,7 +17,6 @@
 #include <exception>
 #include <fstream>
 #include <system_error>
-#include <utility>
 
 #include "kelpie/core/error.hpp"
 

@@ -2,7 +2,6 @@
 #include "bag/inspect.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>

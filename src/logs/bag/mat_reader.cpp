@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "bag/mat_topics.hpp"

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
-#include <utility>
 
 #include "bag/chunked_reader.hpp"
 #include "bag/mcap_records.hpp"

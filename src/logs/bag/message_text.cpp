@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"

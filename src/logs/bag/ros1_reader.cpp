@@ -5,7 +5,6 @@
 
 #include <map>
 #include <utility>
-#include <vector>
 
 #include "bag/chunked_reader.hpp"
 #include "bag/ros1_records.hpp"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <utility>
 
 #include "bag/autopilot_state.hpp"
 #include "bag/topic_columns.hpp"

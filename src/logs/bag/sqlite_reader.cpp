@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <utility>
 
 namespace kelpie::bag {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/held_table.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <utility>

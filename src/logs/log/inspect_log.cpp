@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 #include "bag/open_bag.hpp"
 #include "bag/statistics.hpp"

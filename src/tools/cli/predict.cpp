@@ -5,10 +5,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
