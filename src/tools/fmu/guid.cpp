@@ -2,7 +2,6 @@
 #include "fmu/guid.hpp"
 
 #include <array>
-#include <cstddef>
 #include <cstdio>
 #include <span>
 
