@@ -129,6 +129,12 @@ class DeadReckoning {
   /// velocities.
   void use(const OpenLoop& model);
 
+  /// After use(), where the model has its commands in other units, as behind other actuators: the
+  /// last sample had the commands of `x` (NaN: unknown; velocities are not looked at), which go on
+  /// as `between` says. Without this call the next step would go from one unit to the other. Throws
+  /// InputError on another number of inputs. Allocates nothing.
+  void restate(std::span<const double> x, CommandPath between);
+
   std::size_t states() const;  ///< Number of velocities.
   bool started() const;        ///< After the first samples with all velocities.
   double silent_s() const;     ///< Time since the velocity log measured a velocity.

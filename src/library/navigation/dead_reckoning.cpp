@@ -365,6 +365,15 @@ void DeadReckoning::use(const OpenLoop& model) {
   }
 }
 
+void DeadReckoning::restate(std::span<const double> x, CommandPath between) {
+  require_size("x", x.size(), state_->filter().model().seen.size());
+  state_->settings.between = between;
+  for (auto& [filter, practice] : state_->hypotheses) {
+    filter.restate(x, between);
+    practice.restate(x, between);
+  }
+}
+
 void DeadReckoning::measured_heading(double heading, double deviation) {
   require(state_->settings.planar, "heading", "is known of planar motion only");
   require(std::isfinite(heading), "heading", "has to be finite");

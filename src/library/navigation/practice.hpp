@@ -32,6 +32,9 @@ class Practice {
   /// Goes on with another model of the same inputs and velocities. Allocates.
   void use(const OpenLoop& model) { pupil_.use(model); }
 
+  /// As VelocityFilter::restate().
+  void restate(std::span<const double> x, CommandPath between) { pupil_.restate(x, between); }
+
   /// Factor on the variance of the model's errors.
   double factor() const { return factor_; }
 

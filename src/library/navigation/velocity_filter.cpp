@@ -76,6 +76,14 @@ void VelocityFilter::use(const OpenLoop& model) {
   }
 }
 
+void VelocityFilter::restate(std::span<const double> x, CommandPath between) {
+  between_ = between;
+  for (std::size_t i = 0; i < to_.size(); ++i) {
+    const bool is_state = std::ranges::find(model_.states, i) != model_.states.end();
+    to_[i] = is_state || !std::isfinite(x[i]) ? to_[i] : x[i];
+  }
+}
+
 void VelocityFilter::predict(std::span<const double> x, double dt_s, double factor) {
   from_.swap(to_);
   to_.assign(x.begin(), x.end());
@@ -305,7 +313,7 @@ VelocityFilter::Matrix VelocityFilter::slope(const Vector& s, double share) {
   if (planar_) {
     const Eigen::Matrix2d to_world = Eigen::Rotation2Dd(s(heading())).toRotationMatrix();
     const Eigen::Vector2d water = to_world.transpose() * s.segment<2>(current());
-    Eigen::Matrix<double, Eigen::Dynamic, 2, 0, kMost, 2> by_water =
+    Eigen::Matrix<double, Eigen::Dynamic, 2, 0, Matrix::MaxRowsAtCompileTime, 2> by_water =
         -slope.topLeftCorner(velocities_, 2);
     by_water(0, 1) += s(2);
     by_water(1, 0) -= s(2);

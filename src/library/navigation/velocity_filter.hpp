@@ -16,9 +16,9 @@ namespace kelpie {
 class VelocityFilter {
  public:
   static constexpr int kMostVelocities = 6;
-  static constexpr int kMost = 2 * kMostVelocities + 5;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2 * kMostVelocities + 5, 1>;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                               Vector::MaxRowsAtCompileTime, Vector::MaxRowsAtCompileTime>;
 
   VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings);
 
@@ -33,6 +33,9 @@ class VelocityFilter {
 
   /// Goes on with another model of the same inputs and velocities. Allocates.
   void use(const OpenLoop& model);
+
+  /// The last commands are those of x (NaN: unknown), and so change until the next ones.
+  void restate(std::span<const double> x, CommandPath between);
 
   /// Corrects by measured values of the states `which` (of s) with their covariance. Returns the
   /// squared Mahalanobis distance per value. No velocity moves by more than three standard
@@ -96,12 +99,12 @@ class VelocityFilter {
   std::array<bool, kMostVelocities> of_log_{};
   Vector mean_;
   Matrix covariance_;
-  std::array<int, kMost> doubts_{};  ///< outliers in succession, per state
-  Vector doubted_;                   ///< errors of the last outlier, per state; NaN: none
-  bool yaw_given_ = false;           ///< the yaw rate is measured along the step, surge is not
-  std::vector<double> from_;         ///< the inputs before
-  std::vector<double> to_;           ///< the inputs after
-  std::vector<double> at_;           ///< scratch: inputs of one evaluation
+  std::array<int, Vector::MaxRowsAtCompileTime> doubts_{};  ///< outliers in succession, per state
+  Vector doubted_;            ///< errors of the last outlier, per state; NaN: none
+  bool yaw_given_ = false;    ///< the yaw rate is measured along the step, surge is not
+  std::vector<double> from_;  ///< the inputs before
+  std::vector<double> to_;    ///< the inputs after
+  std::vector<double> at_;    ///< scratch: inputs of one evaluation
 };
 
 }  // namespace kelpie

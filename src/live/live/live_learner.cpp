@@ -126,10 +126,20 @@ void LiveLearner::align(const Row& row) {
   } else {
     doubt(check_.take(row));
     alignment_.push(row.x, row.y, row.t, to_learning());
-    if (finds_alignment_ && alignment_.is_due()) {
+    if (finds_alignment_ && alignment_.is_due() && !has_changed()) {
       update_alignment(false);
     }
   }
+}
+
+// Rows of two vehicles tell actuators of neither, and a model that begins anew forgets what
+// changed.
+bool LiveLearner::has_changed() const {
+  const Diagnosis* const diagnosis = model_->model().diagnosis();
+  const Alignment& present = alignment_.alignment();
+  return (present.rows != 0 || !present.actuators.empty()) && diagnosis != nullptr &&
+         std::ranges::find(diagnosis->findings(), FindingState::named, &Finding::state) !=
+             diagnosis->findings().end();
 }
 
 // A vehicle under way keeps its model: the operator decides. The doubt lasts as long as the model.
@@ -342,7 +352,7 @@ void LiveLearner::serve_block() {
 }
 
 void LiveLearner::give_model() {
-  auto next = live::reckoning_model(model_->model(), alignment_.alignment());
+  auto next = live::reckoning_model(model_->model(), published_);
   {
     const std::lock_guard lock(mutex_);
     reckoning_model_.swap(next);

@@ -78,6 +78,7 @@ class LiveLearner {
   void reset();
   void begin_anew();
   void align(const Row& row);
+  bool has_changed() const;
   void doubt(const std::vector<log::Mistake>& mistakes);
   void learn_aligned(std::span<const double> x, std::span<const double> y, double t);
   auto to_learning() {

@@ -80,14 +80,14 @@ std::string_view fault_text(VelocityFault fault) {
 }  // namespace
 
 std::shared_ptr<const ReckoningModel> reckoning_model(const DynamicsModel& model,
-                                                      const Alignment& alignment) {
+                                                      std::shared_ptr<const Alignment> alignment) {
   if (!model.ready()) {
     return nullptr;
   }
   try {
     return std::make_shared<const ReckoningModel>(
         ReckoningModel{.loop = open_loop(model.trained(), OpenLoopPart::steady),
-                       .alignment = std::make_shared<const Alignment>(alignment)});
+                       .alignment = std::move(alignment)});
   } catch (const InputError&) {
     return nullptr;  // too few samples for the equations
   }
@@ -133,23 +133,33 @@ void LiveReckoning::use(std::shared_ptr<const ReckoningModel> model) {
     reckoning_->use(holds_ ? without_commands(model_->loop) : model_->loop);
   } else {
     settings_ = named_settings(model_->loop);
-    settings_.between = acts_at_once() ? CommandPath::held : CommandPath::linear;
+    settings_.between = path();
     reckoning_ = std::make_unique<DeadReckoning>(model_->loop, settings_);
   }
 }
 
 // A command holds until the next one; what an actuator makes of commands, and what is measured,
 // changes in between.
-bool LiveReckoning::acts_at_once() const {
+CommandPath LiveReckoning::path() const {
   const StreamPlan& plan = configuration_.plan;
   for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
     const bool is_velocity = std::ranges::find(states_, i) != states_.end();
     const auto source = std::ranges::find(plan.sources, plan.inputs[i], &StreamPlan::Source::name);
     if (!is_velocity && source != plan.sources.end() && source->between == Interpolation::line) {
-      return false;
+      return CommandPath::linear;
     }
   }
-  return model_->alignment->actuators.empty();
+  return model_->alignment->actuators.empty() ? CommandPath::held : CommandPath::linear;
+}
+
+// Other actuators give commands in other units: the model goes on from those of this sample.
+void LiveReckoning::take_sample(double t) {
+  if (aligned_ != model_->alignment) {
+    aligned_ = model_->alignment;
+    settings_.between = path();
+    reckoning_->restate(x_, settings_.between);
+  }
+  reckoning_->update(x_, t);
 }
 
 void LiveReckoning::begin_anew(const Receiver& receiver) {
@@ -159,6 +169,7 @@ void LiveReckoning::begin_anew(const Receiver& receiver) {
   based_s_ = -std::numeric_limits<double>::infinity();
   t_ = -std::numeric_limits<double>::infinity();
   asked_s_ = t_;
+  believed_s_ = t_;
   waits_ = false;
   holds_ = false;
   is_lost_ = false;
@@ -202,7 +213,7 @@ std::optional<ReckonedSample> LiveReckoning::update(const Receiver& receiver,
   commands_.act(x_, now_s);
   t_ = now_s;
   follow_commands(has_commands);
-  reckoning_->update(x_, t_);
+  take_sample(t_);
   if (!reckoning_->started()) {
     return std::nullopt;
   }
@@ -265,7 +276,7 @@ void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
     x_[input] = is_stuck ? std::numeric_limits<double>::quiet_NaN() : row.x[input];
   }
   commands_.act(x_, row.t);
-  reckoning_->update(x_, row.t);
+  take_sample(row.t);
   row_x_.assign(row.x.begin(), row.x.end());
   if (!reckoning_->started() || row.t < based_s_ + kTuning.between_poses_s) {
     return;
@@ -336,6 +347,9 @@ void LiveReckoning::note_faults() {
     return;
   }
   fault_ = gravest;
+  if (fault_ != VelocityFault::implausible || !std::isfinite(believed_s_)) {
+    believed_s_ = t_;
+  }
   health_.largest_step = std::max(health_.largest_step, reckoning_->step());
   if (fault_ == VelocityFault::zero || fault_ == VelocityFault::frozen) {
     const bool goes_on = t_ <= invalid_until_s_ + configuration_.plan.gap_s;
@@ -355,7 +369,8 @@ void LiveReckoning::note_loss(Output& output) {
 // Of the velocity log alone: one that began beside silent commands counts from their return on.
 void LiveReckoning::note_outage(Output& output) {
   const bool is_faulty = fault_ == VelocityFault::zero || fault_ == VelocityFault::frozen;
-  const double silent_s = present()->silent_s();
+  const double silent_s =
+      fault_ == VelocityFault::implausible ? t_ - believed_s_ : present()->silent_s();
   const double usual_s = usual_silence_s();
   const double lasted_s = t_ - silent_s - measured_s_;
   if (silent_s <= usual_s && is_out_) {

@@ -28,7 +28,7 @@ struct ReckoningModel {
 
 /// The equations of motion of a model; null before there are any.
 std::shared_ptr<const ReckoningModel> reckoning_model(const DynamicsModel& model,
-                                                      const Alignment& alignment);
+                                                      std::shared_ptr<const Alignment> alignment);
 
 /// Velocities at every message, through outages of the velocity log: a DeadReckoning between the
 /// receiver and the learner (docs/method/open_loop.md#live). Velocities from poses are known half a
@@ -70,7 +70,8 @@ class LiveReckoning {
   ReckoningHealth health() const;
 
  private:
-  bool acts_at_once() const;
+  CommandPath path() const;
+  void take_sample(double t);
   bool take_velocities(const Receiver& receiver);
   std::optional<ReckonedSample> sample(const Receiver& receiver, std::int64_t received_ns,
                                        Output& output);
@@ -92,6 +93,7 @@ class LiveReckoning {
   std::vector<std::size_t> heard_;  // samples of each velocity, so far
   PresentCommands commands_;
   std::shared_ptr<const ReckoningModel> model_;
+  std::shared_ptr<const Alignment> aligned_;  // of the commands that reckoning_ has
   std::unique_ptr<DeadReckoning> reckoning_;
   std::vector<std::size_t> late_;
   std::vector<double> row_x_;               // the last row's
@@ -105,6 +107,7 @@ class LiveReckoning {
   bool waits_ = false;  // for a wanted model
   std::size_t restarts_ = 0;
   VelocityFault fault_ = VelocityFault::none;  // of the velocity log
+  double believed_s_ = t_;                     // the last plausible velocities of the log
   double invalid_from_s_ = std::numeric_limits<double>::infinity();
   double invalid_until_s_ = -std::numeric_limits<double>::infinity();
   bool is_out_ = false;     // an outage was reported

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -602,6 +603,41 @@ TEST(DeadReckoning, GoesOnWithALaterModel) {
   other.states = {1, 0, 2};
   EXPECT_EQ(message_of<InputError>([&] { reckoning.use(other); }),
             "states: have to be those of the first model");
+}
+
+// Pulses in place of efforts, as before an alignment is found.
+constexpr double kRest = 1500.0;
+
+OpenLoop vehicle_of_pulses() {
+  OpenLoop loop = linear_vehicle();
+  loop.accelerations = [](std::span<const double> x, std::span<double> a) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      a[i] = -kDrag * x[i] + x[3 + i] - kRest;
+    }
+  };
+  for (std::size_t i = 3; i < 6; ++i) {
+    loop.seen[i] = {loop.seen[i].low + kRest, loop.seen[i].high + kRest};
+  }
+  return loop;
+}
+
+TEST(DeadReckoning, CommandsInOtherUnitsMakeNoStep) {
+  Water water({0.0, 0.0}, 0.01, 9);
+  DeadReckoning reckoning(vehicle_of_pulses());
+  for (int k = 0; k < 240; ++k) {
+    water.advance();
+    std::array<double, 6> x = water.sample(false);
+    std::for_each(x.begin() + 3, x.end(), [](double& command) { command += kRest; });
+    reckoning.update(x, water.time_s());
+  }
+  reckoning.use(linear_vehicle());
+  water.advance();
+  const std::array<double, 6> x = water.sample(true);
+  reckoning.restate(x, CommandPath::linear);
+  reckoning.update(x, water.time_s());
+  EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.01);
+  follow(reckoning, water, 10.0, true);
+  EXPECT_NEAR(reckoning.velocity(0), water.velocity[0], 0.05);
 }
 
 TEST(DeadReckoning, FaultsHaveNames) {

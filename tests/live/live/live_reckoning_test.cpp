@@ -249,6 +249,42 @@ TEST_F(Reckoning, AMessageThatCallsItselfInvalidIsNotUsed) {
             true);
 }
 
+// The model has pulses as commands at first, then efforts: the velocity does not go from one to the
+// other.
+TEST_F(Reckoning, AnAlignmentThatIsFoundMakesNoStep) {
+  std::vector<Recorded> messages = little_mission(200.0);
+  for (Recorded& message : messages) {
+    if (message.topic == 1) {
+      set_velocity(message, 1500.0 + 30.0 * velocity_of(message));
+    }
+  }
+  run_as(testing::mission_config("clock = \"header\""), testing::mission_topics(), messages, false);
+  EXPECT_NE(said_.find("rests at 1500"), std::string::npos) << said_;
+  double largest = 0.0;
+  for (std::size_t i = 1; i < estimates_.size(); ++i) {
+    largest = std::max(largest, std::abs(estimates_[i].u - estimates_[i - 1].u));
+  }
+  EXPECT_LT(largest, 0.1);
+}
+
+// For 20 s, beyond all belief.
+TEST_F(Reckoning, ALogThatContradictsTheEstimateIsAnOutage) {
+  std::vector<Recorded> messages = mission_;
+  std::size_t count = 0;
+  for (Recorded& message : messages) {
+    if (message.topic == 0 && is_between(message, 80, 100)) {
+      const double wild = 3.0 + 0.01 * static_cast<double>(++count);
+      set_velocity(message, count % 2 == 0 ? wild : -wild);
+    }
+  }
+  const live::Health health = run(messages);
+  EXPECT_NE(said_.find("the velocity log contradicts the estimate; velocities are reckoned"),
+            std::string::npos)
+      << said_;
+  EXPECT_NE(said_.find("velocities are measured again, after 20."), std::string::npos) << said_;
+  EXPECT_EQ(health.reckoning.outages, 1U);
+}
+
 // Noise around a wrong value, beyond all belief: each moves the estimate little.
 TEST_F(Reckoning, WildVelocitiesMoveLittle) {
   std::vector<Recorded> messages = mission_;
