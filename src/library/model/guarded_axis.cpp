@@ -187,8 +187,8 @@ bool GuardedAxis::expected(std::span<const double> x, double y) const {
 // An implausible sample, or one among implausible samples.
 bool GuardedAxis::doubtful(std::span<const double> x, double y, double t) {
   const bool implausible = trusted().scaling() != nullptr && !plausible(x, y, t);
-  if (implausible && recent_ <= kGuard.company) {
-    evidence_ = {};  // of one stretch: a sensor that is stuck explains its next stretch
+  if (implausible && recent_ <= kGuard.company && !former_tried_) {
+    evidence_.begin_stretch();
   }
   recent_ += kGuard.recent * ((implausible ? 1.0 : 0.0) - recent_);
   return implausible ? !expected(x, y) : recent_ > kGuard.company;
@@ -240,10 +240,12 @@ void GuardedAxis::end_early() {
 Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t,
                                     const Prediction& said) {
   trusted_last_ = false;
-  if (probation_ && !feeds_trusted_ && t - doubted_s_ > kGuard.stale_s) {
-    renew_candidate(t);
-  }
+  renew_stale(t);
+  renewed_ = false;
   doubted_s_ = t;
+  if (former_tried_ && run_ == 0) {
+    refused_.clear();  // those before are learned
+  }
   refused_.add(x, y, t);
   Decision decision{.verdict = Verdict::held_back,
                     .prediction = said,
@@ -273,6 +275,8 @@ Decision GuardedAxis::learn_in_candidate(std::span<const double> x, double y, do
   decision.recalled = 0;
   if (share_ > kGuard.confirmed_share || (evidence_.convincing() && t >= convincing_from_)) {
     trust_candidate(t);
+  } else if (former_tried_ && evidence_.rejects()) {
+    renew_candidate(t);
   }
   return decision;
 }
@@ -284,8 +288,14 @@ void GuardedAxis::doubt(double t) {
     passed_ = 0;
   }
   ++run_;
-  if (run_ >= kGuard.least_refused && t - run_since_ >= kGuard.believed_s) {
+  if (run_ < kGuard.least_refused || t - run_since_ < kGuard.believed_s) {
+    return;
+  }
+  if (!former_tried_) {
     begin_candidate(t);
+  } else if (!feeds_trusted_) {  // out of the former scale, too: its axis follows
+    run_ = 0;
+    teach_refused();
   }
 }
 
@@ -302,14 +312,27 @@ void GuardedAxis::begin_probation(double t) {
 void GuardedAxis::begin_candidate(double t) {
   drop_candidate();
   begin_probation(t);
-  former_kept_ = false;
+  former_kept_ = former_tried_ = false;
   candidate() = trusted();
-  candidate().expect(refused_);
   begun_with_ = trusted().status().tally;
   next_look_ = t + kGuard.look_s;
   feeds_trusted_ = false;
+  teach_refused();
+}
+
+void GuardedAxis::teach_refused() {
+  candidate().expect(refused_);
   for (std::size_t i = 0; i < refused_.size(); ++i) {
     feed_.hold(refused_[i].x, refused_[i].y, refused_[i].t);
+  }
+}
+
+// In the silence, so that the candidate knows the samples kept when the next stretch begins.
+void GuardedAxis::renew_stale(double t) {
+  if (probation_ && !feeds_trusted_ && !former_tried_ && !renewed_ &&
+      t - doubted_s_ > kGuard.stale_s) {
+    renew_candidate(t);
+    renewed_ = true;
   }
 }
 
@@ -319,15 +342,17 @@ void GuardedAxis::renew_candidate(double t) {
     return;
   }
   const double convincing_from = convincing_from_;
+  const Evidence evidence = evidence_;
   begin_candidate(t);
   convincing_from_ = convincing_from;
+  evidence_ = evidence;
 }
 
 void GuardedAxis::drop_candidate() {
   if (probation_) {
     gone_.add(candidate().status().tally);
     gone_.subtract(begun_with_);
-    probation_ = false;
+    probation_ = former_tried_ = false;
   }
 }
 
@@ -347,21 +372,30 @@ void GuardedAxis::trust_candidate(double t) {
   run_ = 0;
   recent_ = 0.0;
   share_ = 0.0;
-  young_until_ = t + kGuard.confirmed_young_s;
+  // A scale in which samples out of another are explained is none of garbage.
+  young_until_ = evidence_.convincing() ? t : t + kGuard.confirmed_young_s;
+  former_tried_ = false;
   next_look_ = t + kGuard.look_s;
 }
 
-// With the later half of the first samples; the former axis may still be right.
+// With the later half of the first samples. The former axis may still be right, as of a vehicle
+// that moved first and then hardly: it is the candidate until it has explained, or not, the next
+// samples out of the new scale.
 void GuardedAxis::begin_anew(double t) {
-  drop_candidate();
+  const std::size_t first = first_alike(*trusted().scaling(), first_);
+  if (former_tried_) {
+    gone_.add(trusted().status().tally);
+  } else {
+    drop_candidate();
+    trusted_ = 1 - trusted_;
+    begun_with_ = {};
+  }
   begin_probation(t);
+  former_tried_ = true;
   expected_target_.clear();
-  trusted_ = 1 - trusted_;
   trusted() = arguments_.make();
   trusted().set_past_models(given_);
   trusted().expect_vehicle(expected_);
-  begun_with_ = {};
-  const std::size_t first = first_alike(*candidate().scaling(), first_);
   const std::size_t warm =
       std::min(first + static_cast<std::size_t>(arguments_.shared.warmup), first_.size());
   for (std::size_t i = first; i < warm; ++i) {
@@ -378,6 +412,7 @@ void GuardedAxis::return_to_former(double t) {
   gone_.subtract(trusted().status().tally);
   begin_probation(t);
   former_kept_ = false;
+  former_tried_ = true;
   young_until_ = t;
   feed_trusted(first_alike(*candidate().scaling(), first_));
   first_.clear();
@@ -419,10 +454,11 @@ void GuardedAxis::look(double t) {
     former_kept_ ? return_to_former(t) : begin_anew(t);
     return;
   }
-  if (probation_ && too_large(candidate(), refused_)) {
+  if (probation_ && !former_tried_ && too_large(candidate(), refused_)) {
     refused_.drop_oldest(first_alike(*candidate().scaling(), refused_));
     begin_candidate(t);
   }
+  renew_stale(t);
 }
 
 // A slow vehicle may stay in a small part of its scale; an axis in a scale of garbage explains
@@ -466,22 +502,36 @@ void GuardedAxis::Evidence::add(double said, double was, double scale) {
     const double deviations = std::min(std::abs(error) / scale, kGuard.clip);
     return deviations * deviations;
   };
-  if (samples > 0) {
+  if (of_stretch > 0.0) {
     spread += clipped(was - mean);
     unexplained += clipped(was - said);
   }
-  ++samples;
-  mean += (was - mean) / static_cast<double>(samples);
+  samples += 1.0;
+  of_stretch += 1.0;
+  mean += (was - mean) / of_stretch;
+}
+
+void GuardedAxis::Evidence::begin_stretch() {
+  of_stretch = mean = 0.0;
 }
 
 bool GuardedAxis::Evidence::convincing() const {
-  const double least_spread = kGuard.moving * kGuard.moving * static_cast<double>(samples);
-  return samples >= kGuard.least_explained && spread > least_spread &&
+  return samples >= kGuard.least_explained && moves() &&
          unexplained < (1.0 - kGuard.explained) * spread;
 }
 
+bool GuardedAxis::Evidence::rejects() const {
+  const bool nothing = unexplained > kGuard.unexplained * spread;
+  return moves() && samples >= (nothing ? kGuard.least_explained : kGuard.least_rejected);
+}
+
+bool GuardedAxis::Evidence::moves() const {
+  return spread > kGuard.moving * kGuard.moving * samples;
+}
+
 void GuardedAxis::Evidence::visit(Archive& archive) {
-  archive.whole(samples);
+  archive.number(samples);
+  archive.number(of_stretch);
   archive.number(mean);
   archive.number(spread);
   archive.number(unexplained);
@@ -494,6 +544,8 @@ void GuardedAxis::visit(Archive& archive) {
   archive.flag(early_);
   archive.flag(probation_);
   archive.flag(former_kept_);
+  archive.flag(former_tried_);
+  archive.flag(renewed_);
   const bool another = early_ || probation_ || former_kept_;
   if (another) {
     archive.part("candidate", candidate());

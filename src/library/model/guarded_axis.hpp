@@ -24,19 +24,23 @@ namespace kelpie {
 /// learns implausible samples, or samples among these. When implausible samples have come for half
 /// a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of the
 /// candidate follows. The candidate is in service after inputs more than 10 standard deviations
-/// away, the trusted axis after all other samples. After a minute without such samples the
+/// away, the trusted axis after all other samples. A minute after the last of such samples the
 /// candidate begins as a copy again, since the trusted axis has learned meanwhile, and learns the
 /// implausible samples kept. The candidate takes the place of the trusted axis when implausible
 /// samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when the candidate
-/// explains half of the variance of these samples.
+/// explains half of the variance of these samples, within stretches of them: a sensor that is stuck
+/// explains its next stretch.
 ///
 /// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
-/// for 60 s after a candidate took over, the guard looks every 5 s at the later half of the
-/// samples: when the target or an input stays within 0.12 standard deviations and within 0.36 of
-/// zero, and the axis explains next to nothing, this axis becomes the candidate. The axis that was
-/// trusted before the candidate took over is trusted again, if this axis was older than 90 s, or
-/// else a new axis; the axis learns this half. A candidate with too large a scale begins again in
-/// the same way.
+/// for 60 s after a candidate took over that did not explain half, the guard looks every 5 s at the
+/// later half of the samples: when the target or an input stays within 0.12 standard deviations and
+/// within 0.36 of zero, and the axis explains next to nothing, this axis becomes the candidate. The
+/// axis that was trusted before the candidate took over is trusted again, if this axis was older
+/// than 90 s, or else a new axis; the axis learns this half. A candidate with too large a scale
+/// begins again in the same way. But the vehicle may have moved first, and then hardly: the former
+/// axis stays the candidate, and is trusted again when this axis explains half of the variance of
+/// the next 20 implausible samples or more; where it explains next to nothing of 20, or less than
+/// half of 100, it was one of garbage.
 ///
 /// Before all this, while the trusted axis holds its first samples back for a scale, a candidate
 /// with a scale of ten samples learns these samples and is in service.
@@ -118,12 +122,16 @@ class GuardedAxis final : public OnlineRegressor {
 
   /// How well a candidate explains the samples that only the candidate learns.
   struct Evidence {
-    std::int64_t samples = 0;
-    double mean = 0.0;         ///< of the targets
+    double samples = 0.0;
+    double of_stretch = 0.0;   ///< samples of the stretch
+    double mean = 0.0;         ///< of the targets of the stretch
     double spread = 0.0;       ///< sum of squared deviations from the mean so far
     double unexplained = 0.0;  ///< sum of squared errors
     void add(double said, double was, double scale);
+    void begin_stretch();  ///< Samples from now on count from a mean of their own.
+    bool moves() const;    ///< Whether the targets have moved enough to be evidence.
     bool convincing() const;
+    bool rejects() const;  ///< Whether next to nothing is explained, or less than half for long.
     void visit(Archive& archive);
   };
 
@@ -142,7 +150,9 @@ class GuardedAxis final : public OnlineRegressor {
   void doubt(double t);
   void begin_probation(double t);
   void begin_candidate(double t);
+  void renew_stale(double t);
   void renew_candidate(double t);
+  void teach_refused();
   void drop_candidate();
   void trust_candidate(double t);
   void begin_anew(double t);
@@ -159,6 +169,8 @@ class GuardedAxis final : public OnlineRegressor {
   std::size_t trusted_ = 0;             ///< number of the trusted axis
   bool former_kept_ = false;            ///< the other axis was trusted until a candidate took over
   bool probation_ = false;              ///< the other axis is a candidate
+  bool renewed_ = false;                ///< the candidate, since the last doubtful sample
+  bool former_tried_ = false;           ///< the candidate is the axis before begin_anew()
   bool early_;             ///< the candidate learns as well, until the trusted axis has learned the
                            ///< samples held back
   bool candidate_serves_;  ///< early, or the inputs of the last sample were far away

@@ -84,13 +84,14 @@ inline constexpr struct ModelTuning {
   /// lasts up to 30 s, and from a vehicle that sets off, which is believed within 10 s; the other
   /// values: by hand.
   struct Guard {
-    int early_samples = 10;             ///< of a scale until `warmup` samples give one; by hand
-    double believed_s = 0.5;            ///< s of implausible samples before a candidate learns them
-    std::int64_t least_refused = 4;     ///< samples, the same where rows are rare
-    double share_s = 30.0;              ///< s, memory of the share of time with implausible samples
-    double confirmed_share = 0.7;       ///< reached after 36 s of implausible samples alone
-    std::int64_t least_explained = 20;  ///< samples before a candidate can convince
-    double convinced_s = 4.0;           ///< s of probation before a candidate can convince
+    int early_samples = 10;          ///< of a scale until `warmup` samples give one; by hand
+    double believed_s = 0.5;         ///< s of implausible samples before a candidate learns them
+    std::int64_t least_refused = 4;  ///< samples, the same where rows are rare
+    double share_s = 30.0;           ///< s, memory of the share of time with implausible samples
+    double confirmed_share = 0.7;    ///< reached after 36 s of implausible samples alone
+    double least_explained = 20.0;   ///< samples before a candidate can convince
+    double least_rejected = 100.0;   ///< samples that a former axis has to explain; by hand
+    double convinced_s = 4.0;        ///< s of probation before a candidate can convince
     double stale_s = 60.0;   ///< s without doubtful samples: a candidate is copied anew; by hand
     double moving = 0.3;     ///< standard deviations: targets that move less are no evidence
     double explained = 0.5;  ///< of the variance, convinces

@@ -134,5 +134,39 @@ TEST(Rest, SettingOffSlowlyNothingOverflowsAndAMinuteLaterItCostsNothing) {
   }
 }
 
+// A vehicle that moves for ten seconds of every hundred, from the first sample on.
+double r2_of_short_moves(std::uint64_t seed) {
+  RandomStream random(seed, "short moves");
+  DynamicsModel model({"u", "thr"}, {"udot"}, ModelSettings::from_preset("default", 1));
+  double u = 0.0;
+  double push = 0.0;
+  double size = 0.0;
+  double residual = 0.0;
+  double total = 0.0;
+  for (int i = 0; i < 2400; ++i) {
+    const int phase = i % 200;
+    size = phase == 0 ? random.uniform(0.5, 1.0) * (random.normal() < 0.0 ? -1.0 : 1.0) : size;
+    const double moving = phase >= 20 ? 0.0 : phase < 10 ? size : -size;
+    const double command = moving + 0.01 * random.normal();
+    push = 0.9 * push + 0.002 * random.normal();
+    const double target = 0.2 * command - 0.3 * u - 0.2 * u * std::abs(u) + push;
+    const std::array x{u + 0.002 * random.normal(), command};
+    const std::array y{target + 0.002 * random.normal()};
+    u += 0.5 * target;
+    model.update(x, y, 0.5 * i);
+    if (i >= 600) {
+      residual += std::pow(model.decisions()[0].prediction.value - y[0], 2);
+      total += y[0] * y[0];
+    }
+  }
+  return 1.0 - residual / total;
+}
+
+TEST(Rest, AScaleOfMovementIsKeptThroughRest) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    EXPECT_GT(r2_of_short_moves(seed), 0.95) << seed;  // 0.6 to 0.8 with a scale of rest
+  }
+}
+
 }  // namespace
 }  // namespace kelpie::rest_test
