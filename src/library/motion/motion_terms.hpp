@@ -91,9 +91,9 @@ class MotionTerms {
                                std::size_t most, const Attitude& attitude = {});
   /// Number of terms, the first ones, before the products of a command and a velocity.
   std::size_t without_inflow() const;
-  /// For diagnosis: 1, v, |v|, v|v|, v², v w, v|w|, n, max(n, 0)², −min(n, 0)², the lift of fins and
-  /// rudders as in open_loop(), restoring terms. Inputs of `others` have the terms n, max(n, 0)² and
-  /// −min(n, 0)² of commands and are none.
+  /// For diagnosis: 1, v, |v|, v|v|, v², v w, v|w|, n, max(n, 0)², −min(n, 0)², the lift of fins
+  /// and rudders as in open_loop(), restoring terms. Inputs of `others` have the terms n,
+  /// max(n, 0)² and −min(n, 0)² of commands and are none.
   static MotionTerms diagnosis(std::size_t inputs, std::span<const std::size_t> velocities,
                                const Attitude& attitude = {},
                                std::span<const std::size_t> others = {});
