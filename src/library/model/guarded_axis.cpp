@@ -240,8 +240,9 @@ void GuardedAxis::end_early() {
 Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t,
                                     const Prediction& said) {
   trusted_last_ = false;
-  renew_stale(t);
-  renewed_ = false;
+  if (probation_ && !feeds_trusted_ && !former_tried_ && t - doubted_s_ > kGuard.stale_s) {
+    renew_candidate(t);
+  }
   doubted_s_ = t;
   if (former_tried_ && run_ == 0) {
     refused_.clear();  // those before are learned
@@ -324,15 +325,6 @@ void GuardedAxis::teach_refused() {
   candidate().expect(refused_);
   for (std::size_t i = 0; i < refused_.size(); ++i) {
     feed_.hold(refused_[i].x, refused_[i].y, refused_[i].t);
-  }
-}
-
-// In the silence, so that the candidate knows the samples kept when the next stretch begins.
-void GuardedAxis::renew_stale(double t) {
-  if (probation_ && !feeds_trusted_ && !former_tried_ && !renewed_ &&
-      t - doubted_s_ > kGuard.stale_s) {
-    renew_candidate(t);
-    renewed_ = true;
   }
 }
 
@@ -458,7 +450,6 @@ void GuardedAxis::look(double t) {
     refused_.drop_oldest(first_alike(*candidate().scaling(), refused_));
     begin_candidate(t);
   }
-  renew_stale(t);
 }
 
 // A slow vehicle may stay in a small part of its scale; an axis in a scale of garbage explains
@@ -545,7 +536,6 @@ void GuardedAxis::visit(Archive& archive) {
   archive.flag(probation_);
   archive.flag(former_kept_);
   archive.flag(former_tried_);
-  archive.flag(renewed_);
   const bool another = early_ || probation_ || former_kept_;
   if (another) {
     archive.part("candidate", candidate());

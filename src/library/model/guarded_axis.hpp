@@ -24,7 +24,7 @@ namespace kelpie {
 /// learns implausible samples, or samples among these. When implausible samples have come for half
 /// a second, a candidate, a copy of the trusted axis, learns these samples, and the scale of the
 /// candidate follows. The candidate is in service after inputs more than 10 standard deviations
-/// away, the trusted axis after all other samples. A minute after the last of such samples the
+/// away, the trusted axis after all other samples. After a minute without such samples the
 /// candidate begins as a copy again, since the trusted axis has learned meanwhile, and learns the
 /// implausible samples kept. The candidate takes the place of the trusted axis when implausible
 /// samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when the candidate
@@ -150,7 +150,6 @@ class GuardedAxis final : public OnlineRegressor {
   void doubt(double t);
   void begin_probation(double t);
   void begin_candidate(double t);
-  void renew_stale(double t);
   void renew_candidate(double t);
   void teach_refused();
   void drop_candidate();
@@ -169,7 +168,6 @@ class GuardedAxis final : public OnlineRegressor {
   std::size_t trusted_ = 0;             ///< number of the trusted axis
   bool former_kept_ = false;            ///< the other axis was trusted until a candidate took over
   bool probation_ = false;              ///< the other axis is a candidate
-  bool renewed_ = false;                ///< the candidate, since the last doubtful sample
   bool former_tried_ = false;           ///< the candidate is the axis before begin_anew()
   bool early_;             ///< the candidate learns as well, until the trusted axis has learned the
                            ///< samples held back
