@@ -313,7 +313,7 @@ void GuardedAxis::begin_probation(double t) {
 void GuardedAxis::begin_candidate(double t) {
   drop_candidate();
   begin_probation(t);
-  former_kept_ = former_tried_ = false;
+  former_kept_ = false;
   candidate() = trusted();
   begun_with_ = trusted().status().tally;
   next_look_ = t + kGuard.look_s;
@@ -536,6 +536,7 @@ void GuardedAxis::visit(Archive& archive) {
   archive.flag(probation_);
   archive.flag(former_kept_);
   archive.flag(former_tried_);
+  archive.require(probation_ || !former_tried_, "tries a former axis that is no candidate");
   const bool another = early_ || probation_ || former_kept_;
   if (another) {
     archive.part("candidate", candidate());
