@@ -120,6 +120,44 @@ std::vector<std::size_t> commands_of(const AlignmentProblem& problem, const Alig
   return all_but(velocities, problem.input_names);
 }
 
+struct Searched {
+  AlignmentResult found;
+  std::vector<std::size_t> explained;  // rows in use that the alignment found explains
+};
+
+Searched search(const AlignmentProblem& problem) {
+  Searched searched{.found = {.alignment = problem.current, .gain = 0.0, .why = {}},
+                    .explained{problem.rows.begin(), problem.rows.end()}};
+  AlignmentResult& found = searched.found;
+  const AlignmentRows rows(problem);
+  const std::vector<std::size_t> commands = commands_of(problem, rows);
+  found.alignment.commands.clear();
+  for (const std::size_t command : commands) {
+    found.alignment.commands.push_back(problem.input_names[command]);
+  }
+  const Alignment known = found.alignment.with(problem.known);
+  if (found.alignment.none()) {
+    found.alignment = known;
+  }
+  if (commands.empty()) {
+    found.why = "no inputs are known to be velocities and others commands";
+    return searched;
+  }
+  AlignmentFit fit(rows, commands);
+  const std::size_t needed = kAlignment.rows_per_coefficient * fit.terms();
+  if (rows.size() < needed) {
+    found.why = std::to_string(rows.size()) + " training rows are too few to tell a shift; " +
+                std::to_string(needed) + " are needed";
+  } else if (problem.rate_hz * kAlignment.farthest_s < 1.0) {
+    found.why = "rows are too far apart in time to tell a shift";
+  } else {
+    AlignmentSearch(fit, problem.rate_hz, known).improve(found);
+    searched.explained =
+        fit.explained_rows(AlignmentGuess::of(found.alignment, fit.commands().size()));
+  }
+  return searched;
+}
+
 }  // namespace
 
 int Alignment::rows_at(double rate_hz) const {
@@ -271,32 +309,15 @@ std::vector<std::size_t> find_commands(const AlignmentProblem& problem) {
 }
 
 AlignmentResult find_alignment(const AlignmentProblem& problem) {
-  AlignmentResult found{.alignment = problem.current, .gain = 0.0, .why = {}};
-  const AlignmentRows rows(problem);
-  const std::vector<std::size_t> commands = commands_of(problem, rows);
-  found.alignment.commands.clear();
-  for (const std::size_t command : commands) {
-    found.alignment.commands.push_back(problem.input_names[command]);
+  const Searched all = search(problem);
+  const double left_out =
+      1.0 - static_cast<double>(all.explained.size()) / static_cast<double>(problem.rows.size());
+  if (left_out < kAlignment.least_left_out || left_out > kAlignment.most_left_out) {
+    return all.found;
   }
-  const Alignment known = found.alignment.with(problem.known);
-  if (found.alignment.none()) {
-    found.alignment = known;
-  }
-  if (commands.empty()) {
-    found.why = "no inputs are known to be velocities and others commands";
-    return found;
-  }
-  AlignmentFit fit(rows, commands);
-  const std::size_t needed = kAlignment.rows_per_coefficient * fit.terms();
-  if (rows.size() < needed) {
-    found.why = std::to_string(rows.size()) + " training rows are too few to tell a shift; " +
-                std::to_string(needed) + " are needed";
-  } else if (problem.rate_hz * kAlignment.farthest_s < 1.0) {
-    found.why = "rows are too far apart in time to tell a shift";
-  } else {
-    AlignmentSearch(fit, problem.rate_hz, known).improve(found);
-  }
-  return found;
+  AlignmentProblem explained = problem;
+  explained.rows = all.explained;
+  return search(explained).found;
 }
 
 }  // namespace kelpie

@@ -123,6 +123,12 @@ void AlignmentRows::effects(std::size_t command, int shift, const Actuator& actu
   }
 }
 
+AlignmentGuess AlignmentGuess::of(const Alignment& alignment, std::size_t commands) {
+  AlignmentGuess guess{.shift = alignment.rows, .actuators = alignment.actuators};
+  guess.actuators.resize(commands);
+  return guess;
+}
+
 AlignmentFit::AlignmentFit(const AlignmentRows& rows, const std::vector<std::size_t>& commands)
     : rows_(rows), every_(1 + (rows.size() - 1) / kFit.most_fitted_rows) {
   for (std::size_t i = 0; i < rows.inputs.size(); ++i) {
@@ -145,29 +151,76 @@ void AlignmentFit::take(const AlignmentGuess& guess) {
   }
 }
 
-Eigen::ArrayXXd AlignmentFit::log_errors(const AlignmentGuess& guess) {
-  take(guess);
-  std::array<NormalEquations, kFolds> folds;
+std::vector<AlignmentFit::Fold> AlignmentFit::fits() {
+  std::vector<Fold> folds;
   NormalEquations all(terms(), rows_.targets.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    folds[fold] = sums_of(fold);
-    all.add(folds[fold]);
+    folds.push_back({.sums = sums_of(fold), .coefficients = {}});
+    all.add(folds.back().sums);
+  }
+  const Eigen::VectorXd scale = (all.gram().diagonal().array() > 0.0)
+                                    .select(all.gram().diagonal().array() / all.rows(), 1.0)
+                                    .matrix();
+  for (Fold& fold : folds) {
+    NormalEquations fitted = all;
+    fitted.subtract(fold.sums);
+    fold.coefficients = fitted.solve(kFit.unit_ridge * scale);
+  }
+  return folds;
+}
+
+Eigen::ArrayXXd AlignmentFit::log_errors(const AlignmentGuess& guess) {
+  take(guess);
+  const std::vector<Fold> folds = fits();
+  NormalEquations all(terms(), rows_.targets.size());
+  for (const Fold& fold : folds) {
+    all.add(fold.sums);
   }
   // The last term is 1, so its row of sums tells the mean.
   const Eigen::ArrayXd mean = all.moments().row(all.moments().rows() - 1).transpose() / all.rows();
   const Eigen::ArrayXd variance = all.squares().diagonal().array() / all.rows() - mean.square();
-  const Eigen::VectorXd scale = (all.gram().diagonal().array() > 0.0)
-                                    .select(all.gram().diagonal().array() / all.rows(), 1.0)
-                                    .matrix();
   Eigen::ArrayXXd logs(static_cast<Eigen::Index>(kFolds), mean.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    NormalEquations fitted = all;
-    fitted.subtract(folds[fold]);
-    const Eigen::ArrayXd error =
-        folds[fold].squared_errors(fitted.solve(kFit.unit_ridge * scale)) / folds[fold].rows();
+    const auto& [sums, coefficients] = folds[fold];
+    const Eigen::ArrayXd error = sums.squared_errors(coefficients) / sums.rows();
     logs.row(static_cast<Eigen::Index>(fold)) = log_share(error, variance).transpose();
   }
   return logs;
+}
+
+std::vector<std::size_t> AlignmentFit::explained_rows(const AlignmentGuess& guess) {
+  take(guess);
+  const std::vector<Fold> folds = fits();
+  Eigen::ArrayXXd usual(static_cast<Eigen::Index>(kFolds), folds.front().coefficients.cols());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    const auto& [sums, coefficients] = folds[fold];
+    usual.row(static_cast<Eigen::Index>(fold)) =
+        (sums.squared_errors(coefficients) / sums.rows()).sqrt().transpose();
+  }
+  for (auto target : usual.colwise()) {
+    std::ranges::sort(target);
+  }
+  const Eigen::ArrayXd most = kFit.unexplained * usual.row(kFolds / 2).transpose();
+  std::vector<std::size_t> explained;
+  std::vector<double> x(rows_.inputs.size());
+  Eigen::VectorXd phi(static_cast<Eigen::Index>(terms()));
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    for (std::size_t i = rows_.size() * fold / kFolds; i < rows_.size() * (fold + 1) / kFolds;
+         ++i) {
+      fill(i, x, phi);
+      const Eigen::VectorXd predicted = folds[fold].coefficients.transpose() * phi;
+      bool is_explained = true;
+      for (std::size_t k = 0; k < rows_.targets.size(); ++k) {
+        const auto target = static_cast<Eigen::Index>(k);
+        is_explained =
+            is_explained && std::abs(rows_.targets[k][i] - predicted[target]) <= most[target];
+      }
+      if (is_explained) {
+        explained.push_back(rows_.row(i));
+      }
+    }
+  }
+  return explained;
 }
 
 double AlignmentFit::log_kernel_error(const AlignmentGuess& guess) {

@@ -21,6 +21,9 @@ class AlignmentRows {
 
   std::size_t size() const { return rows_.size(); }
 
+  /// The place in the log of the `i`-th row in use.
+  std::size_t row(std::size_t i) const { return rows_[i]; }
+
   /// Seconds in the stretches of the rows in use.
   double duration_s() const;
 
@@ -50,6 +53,9 @@ struct AlignmentGuess {
   int shift = 0;
   std::vector<Actuator> actuators;
 
+  /// The guess that an alignment is, in rows as found; of as many commands.
+  static AlignmentGuess of(const Alignment& alignment, std::size_t commands);
+
   bool operator==(const AlignmentGuess&) const = default;
 };
 
@@ -71,6 +77,11 @@ class AlignmentFit {
   /// Cost: one fit to at most 5,000 rows.
   Eigen::ArrayXXd log_errors(const AlignmentGuess& guess);
 
+  /// Rows of the log in use that the fits of log_errors() explain to Alignment::unexplained of
+  /// tuning.hpp: without wild velocities, which no alignment explains. Cost: as log_errors(), and
+  /// a prediction for each row.
+  std::vector<std::size_t> explained_rows(const AlignmentGuess& guess);
+
   /// Mean error of kernel ridge regression, which also follows motion outside the terms, on a few
   /// rows of each fifth of the log, so that a change of the vehicle affects one fifth only.
   /// Cost: 25 fits to 240 rows.
@@ -82,7 +93,13 @@ class AlignmentFit {
     Actuator actuator{};
     std::vector<double> values;
   };
+  /// Fits to all but one fold, and the sums of the fold.
+  struct Fold {
+    NormalEquations sums;
+    Eigen::MatrixXd coefficients;  // term × target
+  };
   void take(const AlignmentGuess& guess);
+  std::vector<Fold> fits();
   NormalEquations sums_of(std::size_t fold) const;
   double log_kernel_error(std::span<const std::size_t> rows) const;
   Eigen::MatrixXd kernel_of(std::span<const std::size_t> rows) const;

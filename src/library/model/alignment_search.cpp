@@ -2,13 +2,13 @@
 #include "model/alignment_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "model/fold_evidence.hpp"
 #include "model/tuning.hpp"
 #include "motion/signal_names.hpp"
 
@@ -16,6 +16,7 @@ namespace kelpie {
 namespace {
 
 constexpr const auto& kSearch = kModelTuning.alignment;
+constexpr std::array<double, 2> kRefined{1.4142135623730951, 1.189207115002721};  // √2, √√2
 
 template <typename Change>
 AlignmentGuess with_each(AlignmentGuess guess, const Change& change) {
@@ -26,12 +27,6 @@ AlignmentGuess with_each(AlignmentGuess guess, const Change& change) {
 template <typename Change>
 AlignmentGuess with_one(AlignmentGuess guess, std::size_t k, const Change& change) {
   change(guess.actuators[k]);
-  return guess;
-}
-
-AlignmentGuess guess_of(const Alignment& alignment, std::size_t commands) {
-  AlignmentGuess guess{.shift = alignment.rows, .actuators = alignment.actuators};
-  guess.actuators.resize(commands);
   return guess;
 }
 
@@ -53,7 +48,7 @@ std::optional<double> usual_neutral(double lowest, double highest) {
 AlignmentSearch::AlignmentSearch(AlignmentFit& fit, double rate_hz, const Alignment& known)
     : fit_(fit),
       rate_hz_(rate_hz),
-      known_{.shift = 0, .actuators = guess_of(known, fit.commands().size()).actuators} {
+      known_{.shift = 0, .actuators = AlignmentGuess::of(known, fit.commands().size()).actuators} {
   const double longest =
       std::min(kSearch.longest_lag * fit.rows().duration_s(), kSearch.longest_lag_s);
   lags_s_.push_back(0.0);
@@ -69,7 +64,7 @@ AlignmentSearch::AlignmentSearch(AlignmentFit& fit, double rate_hz, const Alignm
 
 void AlignmentSearch::improve(AlignmentResult& found) {
   const Scored rest = pulses_at_rest(scored(known_));
-  AlignmentGuess before = guess_of(found.alignment, fit_.commands().size());
+  AlignmentGuess before = AlignmentGuess::of(found.alignment, fit_.commands().size());
   if (before == known_ && rest.guess != known_) {
     found.alignment.actuators = rest.guess.actuators;
     before = rest.guess;
@@ -93,18 +88,24 @@ AlignmentSearch::Scored AlignmentSearch::scored(AlignmentGuess guess) {
   return {std::move(guess), std::move(errors)};
 }
 
-// The simplest guess within one standard error of the best, if clearly better.
-AlignmentSearch::Scored AlignmentSearch::step(const Scored& from, const Guesses& guesses) {
+AlignmentSearch::Scored AlignmentSearch::step(const Scored& from, const Guesses& guesses,
+                                              Folds counted) {
   std::vector<Scored> tried{from};
   for (const AlignmentGuess& guess : guesses) {
     if (std::ranges::find(tried, guess, &Scored::guess) == tried.end()) {
       tried.push_back(scored(guess));
     }
   }
+  return simplest(std::move(tried), counted);
+}
+
+// The simplest guess within one standard error of the best, if clearly better than the first.
+AlignmentSearch::Scored AlignmentSearch::simplest(std::vector<Scored> tried, Folds counted) {
   std::vector<Eigen::ArrayXXd> errors;
   std::ranges::transform(tried, std::back_inserter(errors), &Scored::errors);
-  const Scored& chosen = tried[simplest_of_best(errors)];
-  return FoldEvidence(from.errors - chosen.errors).is_clear() ? chosen : from;
+  const std::size_t chosen = simplest_of_best(errors, counted);
+  const bool is_better = FoldEvidence(errors.front() - errors[chosen], counted).is_clear();
+  return std::move(tried[is_better ? chosen : 0]);
 }
 
 // The best guess; for numbers of which one is no simpler than the other.
@@ -134,7 +135,7 @@ AlignmentSearch::Scored AlignmentSearch::pulses_at_rest(Scored from) {
     return from;
   }
   const Scored at_rest = scored(std::move(usual));
-  return FoldEvidence(at_rest.errors - from.errors).is_clear() ? from : at_rest;
+  return FoldEvidence(at_rest.errors - from.errors, Folds::middle).is_clear() ? from : at_rest;
 }
 
 AlignmentSearch::Scored AlignmentSearch::neutral(Scored from) {
@@ -149,11 +150,13 @@ AlignmentSearch::Scored AlignmentSearch::neutral(Scored from) {
     return from;
   }
   const AlignmentGuess usual = all;
-  from = step(from, {usual});
+  from = step(from, {usual}, Folds::middle);
   for (std::size_t k = 0; k < range_.size() && from.guess != usual; ++k) {
-    from = step(from, {with_one(from.guess, k, [&](Actuator& actuator) {
-                  actuator.neutral = usual.actuators[k].neutral;
-                })});
+    from =
+        step(from,
+             {with_one(from.guess, k,
+                       [&](Actuator& actuator) { actuator.neutral = usual.actuators[k].neutral; })},
+             Folds::all);
   }
   return from;
 }
@@ -169,7 +172,7 @@ AlignmentSearch::Scored AlignmentSearch::shifted(const Scored& from) {
       guesses.back().shift = sign * shift;
     }
   }
-  return step(from, guesses);
+  return step(from, guesses, Folds::middle);
 }
 
 // One lag of all actuators.
@@ -178,7 +181,14 @@ AlignmentSearch::Scored AlignmentSearch::lagged(const Scored& from) {
   for (const double lag_s : lags_s_) {
     guesses.push_back(with_each(from.guess, [&](Actuator& actuator) { actuator.lag_s = lag_s; }));
   }
-  return step(from, guesses);
+  Scored together = step(from, guesses, Folds::middle);
+  for (const double factor : kRefined) {
+    const auto by = [&](double times) {
+      return with_each(together.guess, [&](Actuator& actuator) { actuator.lag_s *= times; });
+    };
+    together = descend(std::move(together), {by(factor), by(1.0 / factor)});
+  }
+  return together;
 }
 
 // A second turn for actuators found beside wrong ones.
@@ -203,9 +213,9 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
   for (const double lag_s : lags_s_) {
     guesses.push_back(with([&](Actuator& changed) { changed.lag_s = lag_s; }));
   }
-  from = step(from, guesses);
+  from = step(from, guesses, Folds::all);
 
-  // Part of a lag may have been a rate or a delay.
+  // Part of a lag may have been a rate.
   const std::vector<double> lags_s{actuator().lag_s, 0.5 * actuator().lag_s, 0.0};
   guesses.clear();
   double rate = range_[k];
@@ -217,24 +227,34 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
       }));
     }
   }
-  from = step(from, guesses);
+  from = step(from, guesses, Folds::all);
 
-  guesses.clear();
+  return delayed(from, k);
+}
+
+// Part of a lag may have been a delay. Up to the first delay that explains less: a longer delay
+// that explains more again goes with an oscillation of the vehicle.
+AlignmentSearch::Scored AlignmentSearch::delayed(const Scored& from, std::size_t k) {
+  std::vector<Scored> tried{from};
   double delay_s = 0.5 / rate_hz_;
-  for (int i = 0; i < kSearch.delay_doublings && delay_s <= Alignment::kMostS; ++i) {
-    for (const double share : {1.0, 0.5}) {
-      guesses.push_back(with([&](Actuator& changed) {
+  bool goes_on = true;
+  for (int i = 0; i < kSearch.delay_doublings && delay_s <= Alignment::kMostS && goes_on; ++i) {
+    goes_on = false;
+    for (const double of_lag_s : {0.0, delay_s}) {
+      tried.push_back(scored(with_one(from.guess, k, [&](Actuator& changed) {
         changed.delay_s = delay_s;
-        changed.lag_s *= share;
-      }));
+        changed.lag_s = std::max(changed.lag_s - of_lag_s, 0.0);
+      })));
+      const FoldEvidence gain(from.errors - tried.back().errors);
+      goes_on = goes_on || gain.mean >= -gain.error;
     }
     delay_s *= 2.0;
   }
-  return step(from, guesses);
+  return simplest(std::move(tried), Folds::all);
 }
 
 AlignmentSearch::Scored AlignmentSearch::refined(Scored from) {
-  for (const double factor : {std::sqrt(2.0), std::sqrt(std::sqrt(2.0))}) {
+  for (const double factor : kRefined) {
     for (double Actuator::*const number : {&Actuator::lag_s, &Actuator::rate}) {
       for (std::size_t k = 0; k < range_.size(); ++k) {
         if (from.guess.actuators[k].*number > 0.0) {
@@ -262,11 +282,12 @@ void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& b
   const bool none = present.guess == known_;
   const std::string against = none ? "without" : "with the one before";
   const auto evidence = [&](const Scored& other) {
-    return FoldEvidence(present.errors - other.errors).percent() + " of what is unexplained " +
-           against + ", on " + std::to_string(AlignmentFit::kFolds) + " folds of the training rows";
+    return FoldEvidence(present.errors - other.errors, Folds::middle).percent() +
+           " of what is unexplained " + against + ", on " + std::to_string(AlignmentFit::kFolds) +
+           " folds of the training rows";
   };
   for (const Scored& other : better) {
-    const FoldEvidence gain(present.errors - other.errors);
+    const FoldEvidence gain(present.errors - other.errors, Folds::middle);
     if (other.guess != present.guess && gain.is_clear() && kernel_agrees(present, other)) {
       found.alignment.rows = other.guess.shift;
       found.alignment.lag_s = other.guess.shift / rate_hz_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/alignment_fit.hpp"
+#include "model/fold_evidence.hpp"
 
 namespace kelpie {
 
@@ -26,7 +27,10 @@ class AlignmentSearch {
   using Guesses = std::vector<AlignmentGuess>;  // the simplest first
 
   Scored scored(AlignmentGuess guess);
-  Scored step(const Scored& from, const Guesses& guesses);
+  // A property of all commands counts where the middle folds tell it, a property of one command
+  // has to hold on all.
+  Scored step(const Scored& from, const Guesses& guesses, Folds counted);
+  static Scored simplest(std::vector<Scored> tried, Folds counted);
   Scored descend(Scored from, const Guesses& guesses);
   Scored pulses_at_rest(Scored from);
   Scored neutral(Scored from);
@@ -34,6 +38,7 @@ class AlignmentSearch {
   Scored lagged(const Scored& from);
   Scored each_command(Scored from);
   Scored command(Scored from, std::size_t k);
+  Scored delayed(const Scored& from, std::size_t k);
   Scored refined(Scored from);
   bool kernel_agrees(const Scored& present, const Scored& other);
   void decide(const Scored& present, const std::vector<Scored>& better, AlignmentResult& found);

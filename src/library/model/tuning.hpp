@@ -27,6 +27,10 @@ inline constexpr struct ModelTuning {
     double gaining_share = 0.6;             ///< of the folds; method/physics.md, Alignment
     double clear = 3.0;                     ///< standard errors of a gain; as above
     double slope_correlation = 0.5;         ///< least, of a velocity's slope to a target; by hand
+    double unexplained = 6.0;               ///< root mean squares of the usual fold: an error of a
+                                            ///< row that no alignment explains; by hand
+    double least_left_out = 0.002;          ///< of the rows: fewer have no say; by hand
+    double most_left_out = 0.1;             ///< of the rows: more are another vehicle's; by hand
     std::size_t most_fitted_rows = 5'000;   ///< rows per fit, for the cost; by hand
     double rounding = 1e-6;                 ///< of a target's variance: smaller errors are equal
     double error_cap = 1.5;                 ///< of a target's variance; by hand

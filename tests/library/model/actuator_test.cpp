@@ -206,6 +206,16 @@ TEST(ActuatorSearch, FindsARateLimit) {
   EXPECT_NEAR(found.alignment.actuators[1].rate, 0.05, 0.01);
 }
 
+TEST(ActuatorSearch, FindsADelayOfOneCommand) {
+  for (const double delay_s : {0.4, 0.8, 1.6}) {
+    const AlignmentResult found = Drive({}, {.delay_s = delay_s}).found();
+    ASSERT_EQ(found.alignment.actuators.size(), 2U) << found.why;
+    EXPECT_TRUE(found.alignment.actuators[0].none());
+    EXPECT_NEAR(found.alignment.actuators[1].delay_s, delay_s, 0.01);
+    EXPECT_LE(found.alignment.actuators[1].lag_s, 0.1);
+  }
+}
+
 TEST(ActuatorSearch, KnowsServoPulsesByTheirRange) {
   Drive drive({}, {});
   for (std::size_t row = 0; row < drive.rows.size(); ++row) {

@@ -101,6 +101,26 @@ TEST(AlignmentSearch, AbsurdRowsDecideNothing) {
   EXPECT_EQ(find_alignment(log.problem()).alignment.rows, 4);
 }
 
+// As where the velocity log lost the ground, for one stretch of 4 % of the log.
+TEST(AlignmentSearch, AStretchOfWildVelocitiesDecidesNothing) {
+  for (const std::size_t from : {std::size_t{300}, std::size_t{1850}}) {
+    for (const int late : {0, 4}) {
+      Log log(late);
+      const AlignmentResult clean = find_alignment(log.problem());
+      RandomStream random(5, "wild");
+      for (std::size_t row = from; row < from + 80; ++row) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+          log.inputs[4 * row + axis] = random.uniform(-8.0, 8.0);
+          log.targets[2 * row + axis] = random.uniform(-80.0, 80.0);
+        }
+      }
+      const AlignmentResult found = find_alignment(log.problem());
+      EXPECT_EQ(found.alignment.rows, late) << found.why;
+      EXPECT_EQ(found.alignment.actuators, clean.alignment.actuators) << found.alignment.text();
+    }
+  }
+}
+
 TEST(AlignmentSearch, RowsBeyondAGapAreNoNeighbours) {
   // Stretches of five rows: commands nine rows on, which would fit, are never of the same stretch.
   Log log(9);
