@@ -9,8 +9,10 @@ namespace kelpie {
 
 /// Interpolation of a signal between samples.
 enum class Interpolation {
-  line,  ///< linear: measured states
-  hold,  ///< the last value: commands
+  line,   ///< linear: measured states
+  hold,   ///< the last value: commands
+  curve,  ///< cubic, by slopes over two neighbours (Catmull & Rom 1974): measured states that a
+          ///< line would flatten; linear beside a gap
 };
 
 /// Result of add() for a sample.
@@ -77,6 +79,7 @@ class SignalHistory {
   void reset();                                  ///< Drops the samples, keeps the faults.
 
  private:
+  double on_curve(double t, std::size_t after) const;
   static constexpr double kNever = -std::numeric_limits<double>::infinity();
 
   std::size_t place(std::size_t i) const {

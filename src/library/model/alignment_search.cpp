@@ -232,10 +232,13 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
   return delayed(from, k);
 }
 
-// Part of a lag may have been a delay. Up to the first delay that explains less: a longer delay
-// that explains more again goes with an oscillation of the vehicle.
+// Part of a lag may have been a delay, if no other lag does as well. Up to the first delay that
+// explains less: a longer delay that explains more again goes with an oscillation of the vehicle.
 AlignmentSearch::Scored AlignmentSearch::delayed(const Scored& from, std::size_t k) {
   std::vector<Scored> tried{from};
+  for (const double factor : kRefined) {
+    tried.front() = refined(std::move(tried.front()), k, &Actuator::lag_s, factor);
+  }
   double delay_s = 0.5 / rate_hz_;
   bool goes_on = true;
   for (int i = 0; i < kSearch.delay_doublings && delay_s <= Alignment::kMostS && goes_on; ++i) {
@@ -250,23 +253,30 @@ AlignmentSearch::Scored AlignmentSearch::delayed(const Scored& from, std::size_t
     }
     delay_s *= 2.0;
   }
-  return simplest(std::move(tried), Folds::all);
+  Scored best = simplest(std::move(tried), Folds::all);
+  return best.guess.actuators[k].delay_s == 0.0 ? from : best;
 }
 
 AlignmentSearch::Scored AlignmentSearch::refined(Scored from) {
   for (const double factor : kRefined) {
     for (double Actuator::*const number : {&Actuator::lag_s, &Actuator::rate}) {
       for (std::size_t k = 0; k < range_.size(); ++k) {
-        if (from.guess.actuators[k].*number > 0.0) {
-          const auto by = [&](double times) {
-            return with_one(from.guess, k, [&](Actuator& changed) { changed.*number *= times; });
-          };
-          from = descend(from, {by(factor), by(1.0 / factor)});
-        }
+        from = refined(std::move(from), k, number, factor);
       }
     }
   }
   return from;
+}
+
+AlignmentSearch::Scored AlignmentSearch::refined(Scored from, std::size_t k,
+                                                 double Actuator::*number, double factor) {
+  if (from.guess.actuators[k].*number == 0.0) {
+    return from;
+  }
+  const auto by = [&](double times) {
+    return with_one(from.guess, k, [&](Actuator& changed) { changed.*number *= times; });
+  };
+  return descend(from, {by(factor), by(1.0 / factor)});
 }
 
 // Where a kernel describes the vehicle better than the terms of least squares, the terms may like

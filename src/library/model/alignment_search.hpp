@@ -40,6 +40,7 @@ class AlignmentSearch {
   Scored command(Scored from, std::size_t k);
   Scored delayed(const Scored& from, std::size_t k);
   Scored refined(Scored from);
+  Scored refined(Scored from, std::size_t k, double Actuator::*number, double factor);
   bool kernel_agrees(const Scored& present, const Scored& other);
   void decide(const Scored& present, const std::vector<Scored>& better, AlignmentResult& found);
 

@@ -143,7 +143,8 @@ SampleStream::State::State(const StreamPlan& plan)
     const std::size_t source = plan_.source(derived.of);
     ahead_s_[source] = plan_.derivative.ahead_s();
     back_s_[source] = plan_.derivative.back_s();
-    known_by_[source] = Interpolation::line;
+    known_by_[source] =
+        known_by_[source] == Interpolation::hold ? Interpolation::line : known_by_[source];
   }
   use_pose();
   for (const std::vector<std::string>* const names : {&plan_.inputs, &plan_.targets}) {
@@ -280,9 +281,12 @@ double SampleStream::State::complete_until_s(std::size_t source) const {
 
 // Whether what a source has at `t` can't be changed any more by what comes in order.
 bool SampleStream::State::is_known(std::size_t source, double t, Interpolation between) const {
-  const double newest = signals_[source].newest_s();
-  const double next = between == Interpolation::line ? std::max(t, newest + plan_.gap_s) : t;
-  return newest >= t || complete_until_s(source) > next;
+  const SignalHistory& signal = signals_[source];
+  const double newest = signal.newest_s();
+  const double next = between == Interpolation::hold ? t : std::max(t, newest + plan_.gap_s);
+  const bool has_neighbours =
+      between != Interpolation::curve || signal.first_after(t) + 1 < signal.size() || newest == t;
+  return (newest >= t && has_neighbours) || complete_until_s(source) > next;
 }
 
 bool SampleStream::State::is_known(double t) const {
@@ -376,7 +380,7 @@ void SampleStream::State::make_row(double t) {
   }
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::size_t after = signals_[k].first_after(t);
-    const bool has_used_it = known_by_[k] == Interpolation::line && after < signals_[k].size();
+    const bool has_used_it = known_by_[k] != Interpolation::hold && after < signals_[k].size();
     signals_[k].close(std::max(t + ahead_s_[k], has_used_it ? signals_[k].time_s(after) : t));
   }
   const std::span<const double> values = values_;

@@ -112,7 +112,27 @@ double SignalHistory::at(double t, Interpolation between) const {
   if (after == size_ || time_s(after) - before_s > gap_s_) {
     return kNotHeld;
   }
+  if (between == Interpolation::curve) {
+    return on_curve(t, after);
+  }
   return std::lerp(value(after - 1), value(after), (t - before_s) / (time_s(after) - before_s));
+}
+
+// Hermite's polynomial between the samples before and after t.
+double SignalHistory::on_curve(double t, std::size_t after) const {
+  const auto slope = [&](std::size_t first, std::size_t last) {
+    return (value(last) - value(first)) / (time_s(last) - time_s(first));
+  };
+  const auto joined = [&](std::size_t i) { return time_s(i) - time_s(i - 1) <= gap_s_; };
+  const std::size_t first = after > 1 && joined(after - 1) ? after - 2 : after - 1;
+  const std::size_t last = after + 1 < size_ && joined(after + 1) ? after + 1 : after;
+  const double step_s = time_s(after) - time_s(after - 1);
+  const double share = (t - time_s(after - 1)) / step_s;
+  const double rise = value(after) - value(after - 1);
+  const double bend_before = step_s * slope(first, after) - rise;
+  const double bend_after = step_s * slope(after - 1, last) - rise;
+  return value(after - 1) + share * rise +
+         share * (1.0 - share) * ((1.0 - share) * bend_before - share * bend_after);
 }
 
 void SignalHistory::reset() {

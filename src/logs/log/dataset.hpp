@@ -153,6 +153,7 @@ struct Roles {
   /// Columns of a table that are its poses, by names that tell their part ("x", "psi", "depth":
   /// pose_part_by_name()) or as part=column; empty: none.
   std::vector<std::string> pose{};
+  bool has_curves = false;  ///< measured states between messages: Interpolation::curve, not lines
 };
 
 /// The unit in the SI, and what one of the given unit is there (Unit::in_si). Throws InputError

@@ -478,6 +478,11 @@ void use_tilt_rates(const Roles& roles, StreamPlan::Pose& pose) {
 SamplingPlan sampling_plan(const LogConfig& config, const Roles& roles) {
   SamplingPlan plan = config.plan;
   convert_sources(config, roles, plan);
+  for (StreamPlan::Source& source : plan.sources) {
+    if (roles.has_curves && source.between == Interpolation::line) {
+      source.between = Interpolation::curve;
+    }
+  }
   plan.rate_hz = roles.rate_hz != 0.0 ? roles.rate_hz : config.roles.rate_hz;
   if (plan.rate_hz == 0.0) {
     refuse(config, "log.rate", "is missing; at how many rows per second is the log taken?");

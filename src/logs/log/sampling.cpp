@@ -140,7 +140,7 @@ class Sampler {
         add_to_group(problem, source, streamed.signal(source));
       } else if (is_response(name)) {
         problem.responses.push_back(first_of(streamed.columns[column]));
-      } else if ((is_source && found->between == Interpolation::line) || is_pose_velocity(name)) {
+      } else if ((is_source && found->between != Interpolation::hold) || is_pose_velocity(name)) {
         problem.background.push_back(first_of(streamed.columns[column]));
       }
     }

@@ -83,7 +83,7 @@ void StreamedSignals::require_sound(std::size_t source) const {
                           begin, begin + faults.longest_gap_s));
   }
   // A line through samples that are all too far apart has a value nowhere.
-  if (stream_.plan().sources[source].between == Interpolation::line && faults.samples > 1 &&
+  if (stream_.plan().sources[source].between != Interpolation::hold && faults.samples > 1 &&
       faults.gaps == faults.samples - 1) {
     throw InputError(
         from, fmt::format("its samples come every {:.4g} s, and silences longer than {:.4g} s "

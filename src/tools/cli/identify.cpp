@@ -75,6 +75,7 @@ study::KnownThrust known_thrust(const IdentifyArguments& options, const Base& ba
     }
     if (!wish.surge_added_mass_kg && wish.thrust.empty()) {
       wish.surge_added_mass_kg = base->added_mass(0, 0);
+      wish.is_of_vehicle_file = true;
     }
   }
   if (options.surge_added_mass_kg && !wish.mass_kg) {

@@ -68,6 +68,15 @@ std::string tell_mistakes(const std::string& source, const std::string& field,
 
 // The data of one log; `is_new`: no model wants all its inputs.
 log::Dataset dataset_of(log::Log opened, const PlanOptions& options, bool is_new) {
+  for (const std::string& name : options.log.also) {
+    const std::vector<std::string>& names = opened.table.names;
+    if (!options.config.empty() && std::ranges::find(names, name) == names.end()) {
+      throw InputError(
+          {.file = options.config, .line = 0, .field = "log.states"},
+          fmt::format("has no {0}, which an option names; the line {0} = \"COLUMN\" adds one",
+                      name));
+    }
+  }
   opened.roles.also = options.log.also;
   log::Dataset data = is_new ? new_dataset(std::move(opened)) : opened.dataset();
   if (options.since_s) {
@@ -179,6 +188,7 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   }
   roles.also = also;
   roles.pose = pose;
+  roles.has_curves = has_curves;
   add_units(units, roles.units);
   return roles;
 }

@@ -34,6 +34,7 @@ struct LogOptions {
   std::vector<std::string> units;   ///< column=unit
   std::vector<std::string> also{};  ///< log::Roles::also
   std::vector<std::string> pose{};  ///< log::Roles::pose
+  bool has_curves = false;          ///< log::Roles::has_curves
 
   void add_to(CLI::App& command);
   /// The options of add_to() that say what the columns of a table are.

@@ -12,6 +12,7 @@
 namespace kelpie::cli {
 
 void begin_six_axes(const SixAxisOptions& six, PlanOptions& options) {
+  options.log.has_curves = true;
   if (!six.volts.empty()) {
     options.log.also.push_back(six.volts);
   }

@@ -34,8 +34,9 @@ struct SixAxisLog {
   SixAxisSettings how{};
 };
 
-/// Makes the supply an input of the log. Throws InputError (--frame) on a wrong name, before a log
-/// is read.
+/// Makes the supply an input of the log, and measured states curves between messages: lines flatten
+/// velocities that come slower than the rows. Throws InputError (--frame) on a wrong name, before a
+/// log is read.
 void begin_six_axes(const SixAxisOptions& six, PlanOptions& options);
 
 /// Reads the log; nothing where columns are missing, which `why` then names. Throws as plan_log()

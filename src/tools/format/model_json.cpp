@@ -7,6 +7,7 @@
 #include "file/content.hpp"
 #include "file/json.hpp"
 #include "file/tuning.hpp"
+#include "format/checkpoint_file.hpp"
 #include "format/model_parts.hpp"
 #include "format/steady_json.hpp"
 #include "kelpie/core/error.hpp"
@@ -150,6 +151,12 @@ TrainedModel parse_model_json(const std::string& text, const std::string& source
 }
 
 TrainedModel read_model(const std::filesystem::path& file, ModelInfo* info) {
+  std::error_code none;
+  if (std::filesystem::exists(file, none) && is_checkpoint(file)) {
+    throw InputError({.file = file.string(), .line = 0, .field = "file"},
+                     "is a checkpoint, which `kelpie learn --from` goes on with; give the "
+                     "model.json beside the checkpoint");
+  }
   return parse_model_json(file::read_content(file, "a model.json as `kelpie learn` writes it",
                                              file::kTuning.document_bytes),
                           file.string(), info);

@@ -109,6 +109,8 @@ std::string scale_text(const study::Identification& found) {
       return "thrust coefficients that were given";
     case study::ScaleSource::inertia:
       return "mass and added mass in surge that were given";
+    case study::ScaleSource::vehicle_file:
+      return "the mass, and the added mass in surge of the vehicle file, taken as exact";
     case study::ScaleSource::assumed_added_mass:
       return "the mass that was given; added mass in surge assumed, 0.2 ± 0.15 of it: the error of "
              "that is in every other";

@@ -233,6 +233,12 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
           "± 0.15 of the mass, which is most of the intervals. --thrust or --surge-added-mass does "
           "better.");
       break;
+    case study::ScaleSource::vehicle_file:
+      remarks.emplace_back(
+          "A log tells mass and added mass in surge as a sum: the added mass is the vehicle "
+          "file's, "
+          "taken as exact. --thrust or --surge-added-mass gives another scale.");
+      break;
     case study::ScaleSource::thrust:
     case study::ScaleSource::inertia:
       break;

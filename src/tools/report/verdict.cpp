@@ -217,12 +217,17 @@ std::vector<std::string> vehicle_lines(const study::StreamResult& result) {
   std::vector<std::string> lines = study::finding_lines(result);
   std::ranges::move(model_lines(result), std::back_inserter(lines));
   if (lines.empty()) {
-    lines.push_back("no change of the vehicle was found" +
-                    (result.diagnosis.why_not.empty()
-                         ? ""
-                         : "; causes are not looked for, since it is not known which velocity "
-                           "belongs to which target: " +
-                               states_advice(result)));
+    std::string line = "no change of the vehicle was found";
+    if (!result.diagnosis.why_not.empty()) {
+      line +=
+          "; causes are not looked for, since it is not known which velocity belongs to which "
+          "target: " +
+          states_advice(result);
+    } else if (!result.diagnosis.has_reference) {
+      line +=
+          "; the log is too short for causes, which are told by comparison with the first minutes";
+    }
+    lines.push_back(std::move(line));
   }
   if (lines.size() > kTuning.most_changes) {
     const std::size_t more = lines.size() - kTuning.most_changes;

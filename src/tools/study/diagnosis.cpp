@@ -51,7 +51,8 @@ DiagnosisResult diagnosis_of(const DynamicsModel& model) {
   }
   result.findings = model.findings();
   result.health = diagnosis->health();
-  if (diagnosis->knows_thrust()) {
+  result.has_reference = diagnosis->knows_thrust();
+  if (result.has_reference) {
     result.present = diagnosis->present();
   }
   if (model.ready()) {

@@ -168,10 +168,11 @@ void give_scale_to(const KnownThrust& known, Fit& fit, ScaleSource& scale) {
     scale = ScaleSource::thrust;
   } else if (known.mass_kg) {
     const double mass = *known.mass_kg;
-    scale = known.surge_added_mass_kg ? ScaleSource::inertia : ScaleSource::assumed_added_mass;
     if (known.surge_added_mass_kg) {
+      scale = known.is_of_vehicle_file ? ScaleSource::vehicle_file : ScaleSource::inertia;
       scale_by_inertia(fit, mass + *known.surge_added_mass_kg, 0.0);
     } else {
+      scale = ScaleSource::assumed_added_mass;
       scale_by_inertia(fit, mass * (1.0 + kTuning.identification.added_share),
                        mass * kTuning.identification.added_error);
     }

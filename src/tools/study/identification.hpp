@@ -29,10 +29,11 @@ struct KnownThrust {
   std::vector<std::pair<std::string, double>> thrust{};  ///< thruster, N per square of its unit
   std::optional<double> mass_kg{};                       ///< of the rigid body
   std::optional<double> surge_added_mass_kg{};           ///< surge inertia minus mass
+  bool is_of_vehicle_file = false;                       ///< the added mass is
 };
 
 /// Source of the scale of forces.
-enum class ScaleSource : std::uint8_t { none, thrust, inertia, assumed_added_mass };
+enum class ScaleSource : std::uint8_t { none, thrust, inertia, vehicle_file, assumed_added_mass };
 
 /// Measured and predicted accelerations of held-out rows, an entry per axis.
 struct HeldOutFit {

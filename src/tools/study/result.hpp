@@ -100,6 +100,7 @@ struct AxisResult {
 /// Named changes of the vehicle, and the state of the thrusters at the end.
 struct DiagnosisResult {
   std::string why_not;            ///< why no diagnosis was possible; empty: diagnosis ran
+  bool has_reference = true;      ///< else there were too few rows to compare with
   std::vector<Finding> findings;  ///< in the order of time
   std::vector<Cause> health;      ///< of every thruster; empty before the reference is complete
   std::vector<Cause> present{};   ///< shares of the nominal thrust; empty before a reference

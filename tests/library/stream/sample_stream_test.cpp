@@ -103,6 +103,29 @@ TEST(SampleStream, SamplesAreScaledAboutAPoint) {
   EXPECT_NEAR(rows[10].y[0], 1.0, 1e-9);
 }
 
+// A row between two samples needs the samples beside these two.
+TEST(SampleStream, ACurveWaitsForTheSampleAfterTheNext) {
+  StreamPlan plan = plan_of();
+  plan.sources[0].between = Interpolation::curve;
+  plan.targets.clear();
+  plan.derived.clear();
+  SampleStream stream(plan);
+  SignalHistory all(100, 0.0, plan.gap_s);
+  for (int k = 0; k < 40; ++k) {
+    all.add(0.15 * k, std::sin(0.9 * k));
+  }
+  std::vector<Row> rows;
+  for (int k = 0; k < 40; ++k) {
+    stream.feed(0, 0.15 * k, std::sin(0.9 * k));
+    stream.feed(1, 0.15 * k, 1.0);
+    std::ranges::move(rows_of(stream), std::back_inserter(rows));
+  }
+  ASSERT_GT(rows.size(), 50U);
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.x[0], all.at(row.t, Interpolation::curve)) << row.t;
+  }
+}
+
 TEST(SampleStream, ACentredDerivativeWaitsForHalfItsWindow) {
   SampleStream stream(plan_of(FilterWindow::centred));
   drive(stream, 0.0, 5.0);

@@ -94,6 +94,34 @@ TEST(SignalHistory, StatesLieOnLinesAndCommandsHold) {
   EXPECT_EQ(Values(hold.begin() + 1, hold.end()), (Values{0.0, 0.0, 1.0, 1.0, -1.0, -1.0}));
 }
 
+// Samples of a wave of 1 Hz at 8 Hz: lines cut its crests.
+TEST(SignalHistory, ACurveKeepsTheCrestsThatLinesCut) {
+  const auto wave = [](double t) { return std::sin(6.283185307179586 * t); };
+  Values stamps;
+  Values values;
+  for (int i = 0; i < 40; ++i) {
+    stamps.push_back(0.125 * i + (i % 3 == 0 ? 0.01 : 0.0));
+    values.push_back(wave(stamps.back()));
+  }
+  const SignalHistory history = history_of(stamps, values);
+  double line = 0.0;
+  double curve = 0.0;
+  for (double t = 0.5; t < 4.5; t += 0.01) {
+    line = std::fmax(line, std::abs(history.at(t, Interpolation::line) - wave(t)));
+    curve = std::fmax(curve, std::abs(history.at(t, Interpolation::curve) - wave(t)));
+  }
+  EXPECT_LT(curve, 0.4 * line);
+  EXPECT_EQ(at(history, stamps, Interpolation::curve), values);
+}
+
+TEST(SignalHistory, BesideASilenceACurveIsALine) {
+  const SignalHistory history = history_of({0.0, 0.5, 2.0, 2.5}, {0, 4, 9, 1});
+  for (const double t : {0.1, 0.3, 2.2, 2.4}) {
+    EXPECT_DOUBLE_EQ(history.at(t, Interpolation::curve), history.at(t, Interpolation::line));
+  }
+  EXPECT_TRUE(std::isnan(history.at(1.0, Interpolation::curve)));
+}
+
 TEST(SignalHistory, NothingBridgesASilence) {
   const SignalHistory history = history_of({0.0, 0.5, 3.0, 3.5}, {0, 1, 2, 3});
   const Values times{0.25, 0.75, 1.5, 1.6, 2.9, 3.0, 3.25};

@@ -44,6 +44,23 @@ std::vector<std::vector<double>> rows_of(const std::string& csv) {
   return rows;
 }
 
+// A log with three of four cells of its columns from the `first` to the `last` empty.
+std::string with_every_fourth(const std::string& csv, std::size_t first, std::size_t last) {
+  std::istringstream lines(csv);
+  std::string text;
+  std::string line;
+  for (std::size_t row = 0; std::getline(lines, line); ++row) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (std::size_t column = 0; std::getline(cells, cell, ','); ++column) {
+      const bool is_empty = row % 4 != 0 && column >= first && column <= last;
+      text += std::string(column == 0 ? "" : ",") + (is_empty ? "" : cell);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 class Identify : public testing::CommandTest {
  protected:
   void simulate(const std::string& vehicle, const std::string& noise,
@@ -93,13 +110,19 @@ TEST_F(Identify, TheIdentifiedVehicleDrivesAsTheTrueOne) {
 
 const std::string kHeavy = KELPIE_SOURCE_DIR "/vehicles/bluerov2_heavy.toml";
 
+// Five minutes of the vehicle by a free pilot, who takes new speeds every `period_s`.
+std::string piloted_heavy(const std::string& period_s) {
+  return "vehicle = \"" + kHeavy +
+         "\"\nrate_hz = 20.0\nlog = \"six_axes\"\nnoise = \"as_recorded\"\n"
+         "[excitation]\nmode = \"pilot\"\nperiod_s = [" +
+         period_s +
+         "]\neffort = [50, 50, 40, 6, 6, 4]\ndither = 0.1\n[[configurations]]\n"
+         "name = \"nominal\"\n[[phases]]\nconfiguration = \"nominal\"\n"
+         "duration_s = 300.0\n";
+}
+
 TEST_F(Identify, SixAxesWhereTheVehicleFileHasTheLogsThrusters) {
-  write("heavy.toml", "vehicle = \"" + kHeavy +
-                          "\"\nrate_hz = 20.0\nlog = \"six_axes\"\nnoise = \"as_recorded\"\n"
-                          "[excitation]\nmode = \"pilot\"\nperiod_s = [1.0, 6.0]\n"
-                          "effort = [50, 50, 40, 6, 6, 4]\ndither = 0.1\n[[configurations]]\n"
-                          "name = \"nominal\"\n[[phases]]\nconfiguration = \"nominal\"\n"
-                          "duration_s = 300.0\n");
+  write("heavy.toml", piloted_heavy("1.0, 6.0"));
   testing::succeeded(run("simulate heavy.toml --out heavy.csv"));
   const std::string known = "heavy.csv --vehicle " + kHeavy;
   const Outcome outcome = testing::succeeded(
@@ -108,6 +131,8 @@ TEST_F(Identify, SixAxesWhereTheVehicleFileHasTheLogsThrusters) {
   const std::string yaml = content("out/parameters.yaml");
   EXPECT_NE(yaml.find("on six axes"), std::string::npos) << yaml;
   EXPECT_NE(yaml.find("frame: FRD"), std::string::npos);
+  EXPECT_NE(yaml.find("added mass in surge of the vehicle file, taken as exact"),
+            std::string::npos);
   const std::size_t at = yaml.find("\"heave_inertia\"");
   ASSERT_NE(at, std::string::npos) << yaml;
   EXPECT_NEAR(number_after(yaml, "value: ", at), 13.5 + 18.68, 0.5);
@@ -127,10 +152,67 @@ TEST_F(Identify, SixAxesWhereTheVehicleFileHasTheLogsThrusters) {
   testing::succeeded(run("simulate again.toml --out again.csv"));
   expect_refused(known + " --for gazebbo", "did you mean 'gazebo'?");
   expect_refused(known + " --volts batt", "batt");
+  write(
+      "signals.toml",
+      "[log]\nrate = 20\ntime = \"t\"\n[log.states]\nu = \"u\"\n[log.derived]\nudot = \"d(u)\"\n");
+  expect_refused(known + " --config signals.toml --volts voltage",
+                 "signals.toml: log.states: has no voltage, which an option names");
   std::string other = testing::content_of(kHeavy);
   other.replace(other.find("nominal_v = 16.0"), 16, "nominal_v = 1600.0");
   write("other.toml", other);
   expect_refused("heavy.csv --vehicle other.toml --volts voltage", "voltage is 1600 V");
+}
+
+// Lines between samples of 5 Hz cut the crests of velocities, so that masses and thrusts are wrong
+// by several standard errors.
+TEST_F(Identify, VelocitiesThatComeSlowerThanTheRowsAreNoLines) {
+  write("heavy.toml", piloted_heavy("0.5, 2.0"));
+  testing::succeeded(run("simulate heavy.toml --out heavy.csv"));
+  write("slow.csv", with_every_fourth(content("heavy.csv"), 2, 4));
+  write("signals.toml", R"toml([log]
+rate = 20
+time = "t"
+window = 0.6
+inputs = ["u", "v", "w", "p", "q", "r", "phi", "theta", "m1", "m2", "m3", "m4", "m5", "m6", "m7", "m8"]
+targets = ["udot", "vdot", "wdot", "pdot", "qdot", "rdot"]
+[log.states]
+u = "u"
+v = "v"
+w = "w"
+p = "p"
+q = "q"
+r = "r"
+phi = "phi"
+theta = "theta"
+voltage = "voltage"
+[log.commands]
+m1 = "m1"
+m2 = "m2"
+m3 = "m3"
+m4 = "m4"
+m5 = "m5"
+m6 = "m6"
+m7 = "m7"
+m8 = "m8"
+[log.derived]
+udot = "d(u)"
+vdot = "d(v)"
+wdot = "d(w)"
+pdot = "d(p)"
+qdot = "d(q)"
+rdot = "d(r)"
+)toml");
+  testing::succeeded(run("identify slow.csv --config signals.toml --vehicle " + kHeavy +
+                         " --volts voltage --for kelpie --out out"));
+  const std::string yaml = content("out/parameters.yaml");
+  int held = 0;
+  for (int k = 1; k <= 8; ++k) {
+    const std::size_t at = yaml.find("\"m" + std::to_string(k) + ".forward\"");
+    const double low = number_after(yaml, "interval90: [", at);
+    const double high = number_after(yaml, ", ", yaml.find("interval90", at));
+    held += low <= 51.5 && 51.5 <= high ? 1 : 0;
+  }
+  EXPECT_GE(held, 7) << yaml;
 }
 
 // A log with a column in degrees in place of radians.

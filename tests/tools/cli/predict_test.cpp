@@ -195,6 +195,8 @@ TEST_F(Predict, RefusesLogsOfAnotherVehicleAndDamagedModels) {
   write_text(folder_ / "out" / "model.json", model.substr(0, model.size() / 2));
   outcome = predict("log.csv");
   testing::expect_refused(outcome, "model.json: file: is not JSON");
+  write_text(folder_ / "out" / "model.json", "\x8BKELPIE\r\n\x1A\n\n");
+  testing::expect_refused(predict("log.csv"), "is a checkpoint");
 }
 
 }  // namespace

@@ -37,6 +37,12 @@ TEST(Verdict, TellsInputsQualityAndChangesInTenLines) {
   EXPECT_LE(std::ranges::count(text, '\n'), 12) << text;
 }
 
+TEST(Verdict, SaysWhereALogIsTooShortForCauses) {
+  study::StreamResult result = two_axes();
+  result.diagnosis.has_reference = false;
+  EXPECT_TRUE(has(report::verdict_text(result), "too short for causes"));
+}
+
 TEST(Verdict, SaysWhereLeastSquaresOrTheMeanIsBetter) {
   study::AxisResult axis = two_axes().axes.front();
   axis.r2_final = 0.85;
