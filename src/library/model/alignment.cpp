@@ -152,8 +152,11 @@ Searched search(const AlignmentProblem& problem) {
     found.why = "rows are too far apart in time to tell a shift";
   } else {
     AlignmentSearch(fit, problem.rate_hz, known).improve(found);
-    searched.explained =
+    std::vector<std::size_t> explained =
         fit.explained_rows(AlignmentGuess::of(found.alignment, fit.commands().size()));
+    if (explained.size() >= needed) {
+      searched.explained = std::move(explained);
+    }
   }
   return searched;
 }

@@ -332,34 +332,17 @@ void require_inertias(const SixAxisFit& fit) {
 }
 
 // Thrusters that ran, and would have to push backwards.
-std::string thrusters_at_rest(const Search& search, const SixAxisFit& fit) {
-  std::vector<std::string> names;
+std::vector<std::size_t> thrusters_at_rest(const Search& search, const SixAxisFit& fit) {
+  std::vector<std::size_t> at_rest;
   for (std::size_t i = 0; i < fit.thrusters.size(); ++i) {
     const std::size_t place = SixAxisPlace::thruster(i);
     const bool ran =
         std::ranges::find(search.best().free, place_of(place)) != search.best().free.end();
     if (ran && fit.parameters[place].value == 0.0 && fit.parameters[place + 1].value == 0.0) {
-      names.push_back(fit.thrusters[i].name);
+      at_rest.push_back(i);
     }
   }
-  return names.empty() ? "" : " (no thrust of " + join_text(names, ", ") + ")";
-}
-
-// The parameters of the search, where they are those of a vehicle.
-SixAxisFit checked(const Search& search) {
-  constexpr const char* kCheck =
-      "; check places and directions of the thrusters, and signs and units of commands, velocities "
-      "and angles";
-  SixAxisFit fit = search.collected();
-  const std::string at_rest = thrusters_at_rest(search, fit);
-  if (!search.explains()) {
-    throw InputError("no vehicle with these thrusters explains the log" + at_rest + kCheck);
-  }
-  require_inertias(fit);
-  if (!search.found()) {
-    throw InputError("the fit settles on no vehicle with these thrusters" + at_rest + kCheck);
-  }
-  return fit;
+  return at_rest;
 }
 
 SixVector as_array(const Eigen::VectorXd& values) {
@@ -405,6 +388,46 @@ Search best_search(const SixAxisRows& rows, const SixAxisSettings& options) {
         " windows of 0.5 to 8 s without a gap, with five rows or more each");
   }
   return *std::move(best);
+}
+
+// One thruster the other way round takes the thrust of others with it.
+std::string reversed_text(const SixAxisRows& rows, const SixAxisSettings& options, double half_s,
+                          const std::vector<std::size_t>& at_rest) {
+  for (const std::size_t thruster : at_rest) {
+    SixAxisRows turned = rows;
+    for (double& part : turned.thrusters[thruster].direction) {
+      part = -part;
+    }
+    if (Search search(turned, options, half_s); search.run() && search.found()) {
+      return "; the log is explained with the direction of " + rows.thrusters[thruster].name +
+             " reversed";
+    }
+  }
+  return "";
+}
+
+// The parameters of the search, where they are those of a vehicle.
+SixAxisFit checked(const Search& search, const SixAxisRows& rows, const SixAxisSettings& options) {
+  SixAxisFit fit = search.collected();
+  const bool explains = search.explains();
+  if (explains) {
+    require_inertias(fit);
+  }
+  if (!search.found()) {
+    const std::vector<std::size_t> at_rest = thrusters_at_rest(search, fit);
+    std::vector<std::string> names;
+    for (const std::size_t thruster : at_rest) {
+      names.push_back(rows.thrusters[thruster].name);
+    }
+    throw InputError(
+        std::string(explains ? "the fit settles on no vehicle with these thrusters"
+                             : "no vehicle with these thrusters explains the log") +
+        (names.empty() ? std::string() : " (no thrust of " + join_text(names, ", ") + ")") +
+        reversed_text(rows, options, search.windows().shape.half_s, at_rest) +
+        "; check places and directions of the thrusters, and signs and units of commands, "
+        "velocities and angles");
+  }
+  return fit;
 }
 
 // What was never seen: a thruster counts as alike both ways.
@@ -483,13 +506,13 @@ SixVector SixAxisFit::free_acceleration(std::span<const double, kSixAxes> veloci
 }
 
 SixAxisFit fit_six_axes(const SixAxisRows& rows, const SixAxisSettings& options) {
-  return checked(best_search(rows, options));
+  return checked(best_search(rows, options), rows, options);
 }
 
 ExpectedSixAxisFit::ExpectedSixAxisFit(const SixAxisRows& rows, const SixAxisSettings& options)
     : structure_(rows.thrusters) {
   const Search search = best_search(rows, options);
-  now_ = checked(search);
+  now_ = checked(search, rows, options);
   misfit_ = now_.misfit;
   windows_ = search.windows();
   parameters_ = search.best().parameters;

@@ -112,6 +112,7 @@ TEST(SixAxisFit, AThrusterThatPushesBackwardsIsRefusedByName) {
   }
   const std::string message = message_of<InputError>([&] { fit_six_axes(rows); });
   EXPECT_NE(message.find("no thrust of T5"), std::string::npos) << message;
+  EXPECT_NE(message.find("with the direction of T5 reversed"), std::string::npos) << message;
   EXPECT_NE(message.find("check places and directions"), std::string::npos) << message;
   EXPECT_EQ(message_of<InputError>([&] { ExpectedSixAxisFit{rows, {}}; }), message) << "a plan";
 }

@@ -81,7 +81,7 @@ TEST(StudyReport, TheVerdictCountsAllFindingsOfALongStudy) {
   study.add_vehicle("one", kMissions);
   const Pages pages = pages_of(study, [](const fleet::Combination& one) {
     ForgedStudy::Forged forged = falling(one);
-    forged.outcome.left = "all thrusters give their thrust";  // no finding
+    forged.outcome.left = "no thruster is known to have changed";  // no finding
     return forged;
   });
   EXPECT_NE(pages.verdict.find(
