@@ -264,7 +264,8 @@ std::string Authority::text(const DiagnosisNames& names, std::string_view speed_
                       " % of its thrust");
     }
   }
-  std::string text = parts.empty() ? "no thruster is known to have changed" : join_text(parts, ", ");
+  std::string text =
+      parts.empty() ? "no thruster is known to have changed" : join_text(parts, ", ");
   parts.clear();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     parts.push_back(names.targets[i] + " " + text_of(axes_[i].left(), 2));
