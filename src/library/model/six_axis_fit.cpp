@@ -30,7 +30,7 @@ std::vector<FittedParameter> six_axis_parameters(const std::vector<PlacedThruste
   std::vector<std::pair<std::string, ParameterKind>> named;
   const auto add_axes = [&](const char* name, ParameterKind kind) {
     for (const char* const axis : {"surge", "sway", "heave", "roll", "pitch", "yaw"}) {
-      named.push_back({axis + std::string(name), kind});
+      named.emplace_back(axis + std::string(name), kind);
     }
   };
   add_axes("_inertia", inertia);
@@ -42,11 +42,11 @@ std::vector<FittedParameter> six_axis_parameters(const std::vector<PlacedThruste
                              {"pitch_moment", offset},
                              {"righting_moment", size}});
   for (const PlacedThruster& thruster : thrusters) {
-    named.push_back({thruster.name + ".forward", size});
-    named.push_back({thruster.name + ".reverse", size});
+    named.emplace_back(thruster.name + ".forward", size);
+    named.emplace_back(thruster.name + ".reverse", size);
   }
   for (const char* const name : {"lag", "delay", "dead_band", "volts_exponent"}) {
-    named.push_back({std::string("thrusters.") + name, curve});
+    named.emplace_back(std::string("thrusters.") + name, curve);
   }
   return unknown_parameters(named);
 }
