@@ -151,71 +151,60 @@ void AlignmentFit::take(const AlignmentGuess& guess) {
   }
 }
 
-std::vector<AlignmentFit::Fold> AlignmentFit::fits() {
-  std::vector<Fold> folds;
+AlignmentFit::HeldOut AlignmentFit::held_out() const {
+  std::vector<NormalEquations> folds;
   NormalEquations all(terms(), rows_.targets.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    folds.push_back({.sums = sums_of(fold), .coefficients = {}});
-    all.add(folds.back().sums);
+    folds.push_back(sums_of(fold));
+    all.add(folds.back());
   }
+  // The last term is 1, so its row of sums tells the mean.
+  const Eigen::ArrayXd mean = all.moments().row(all.moments().rows() - 1).transpose() / all.rows();
   const Eigen::VectorXd scale = (all.gram().diagonal().array() > 0.0)
                                     .select(all.gram().diagonal().array() / all.rows(), 1.0)
                                     .matrix();
-  for (Fold& fold : folds) {
+  HeldOut held_out{.coefficients = {},
+                   .errors{static_cast<Eigen::Index>(kFolds), mean.size()},
+                   .variance = all.squares().diagonal().array() / all.rows() - mean.square()};
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
     NormalEquations fitted = all;
-    fitted.subtract(fold.sums);
-    fold.coefficients = fitted.solve(kFit.unit_ridge * scale);
+    fitted.subtract(folds[fold]);
+    held_out.coefficients.push_back(fitted.solve(kFit.unit_ridge * scale));
+    held_out.errors.row(static_cast<Eigen::Index>(fold)) =
+        (folds[fold].squared_errors(held_out.coefficients.back()) / folds[fold].rows()).transpose();
   }
-  return folds;
+  return held_out;
 }
 
 Eigen::ArrayXXd AlignmentFit::log_errors(const AlignmentGuess& guess) {
   take(guess);
-  const std::vector<Fold> folds = fits();
-  NormalEquations all(terms(), rows_.targets.size());
-  for (const Fold& fold : folds) {
-    all.add(fold.sums);
+  HeldOut held_out = this->held_out();
+  for (auto errors : held_out.errors.rowwise()) {
+    errors = log_share(errors.transpose(), held_out.variance).transpose();
   }
-  // The last term is 1, so its row of sums tells the mean.
-  const Eigen::ArrayXd mean = all.moments().row(all.moments().rows() - 1).transpose() / all.rows();
-  const Eigen::ArrayXd variance = all.squares().diagonal().array() / all.rows() - mean.square();
-  Eigen::ArrayXXd logs(static_cast<Eigen::Index>(kFolds), mean.size());
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    const auto& [sums, coefficients] = folds[fold];
-    const Eigen::ArrayXd error = sums.squared_errors(coefficients) / sums.rows();
-    logs.row(static_cast<Eigen::Index>(fold)) = log_share(error, variance).transpose();
-  }
-  return logs;
+  return std::move(held_out.errors);
 }
 
 std::vector<std::size_t> AlignmentFit::explained_rows(const AlignmentGuess& guess) {
   take(guess);
-  const std::vector<Fold> folds = fits();
-  Eigen::ArrayXXd usual(static_cast<Eigen::Index>(kFolds), folds.front().coefficients.cols());
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    const auto& [sums, coefficients] = folds[fold];
-    usual.row(static_cast<Eigen::Index>(fold)) =
-        (sums.squared_errors(coefficients) / sums.rows()).sqrt().transpose();
+  HeldOut held_out = this->held_out();
+  for (auto errors : held_out.errors.colwise()) {
+    std::ranges::sort(errors);
   }
-  for (auto target : usual.colwise()) {
-    std::ranges::sort(target);
-  }
-  const Eigen::ArrayXd most = kFit.unexplained * usual.row(kFolds / 2).transpose();
+  const Eigen::ArrayXd most = kFit.unexplained * held_out.errors.row(kFolds / 2).sqrt().transpose();
   std::vector<std::size_t> explained;
   std::vector<double> x(rows_.inputs.size());
   Eigen::VectorXd phi(static_cast<Eigen::Index>(terms()));
+  Eigen::ArrayXd y(most.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    for (std::size_t i = rows_.size() * fold / kFolds; i < rows_.size() * (fold + 1) / kFolds;
-         ++i) {
+    const std::size_t end = rows_.size() * (fold + 1) / kFolds;
+    for (std::size_t i = rows_.size() * fold / kFolds; i < end; ++i) {
       fill(i, x, phi);
-      const Eigen::VectorXd predicted = folds[fold].coefficients.transpose() * phi;
-      bool is_explained = true;
-      for (std::size_t k = 0; k < rows_.targets.size(); ++k) {
-        const auto target = static_cast<Eigen::Index>(k);
-        is_explained =
-            is_explained && std::abs(rows_.targets[k][i] - predicted[target]) <= most[target];
+      for (Eigen::Index k = 0; k < y.size(); ++k) {
+        y[k] = rows_.targets[static_cast<std::size_t>(k)][i];
       }
-      if (is_explained) {
+      const Eigen::ArrayXd miss = y - (held_out.coefficients[fold].transpose() * phi).array();
+      if ((miss.abs() <= most).all()) {
         explained.push_back(rows_.row(i));
       }
     }

@@ -93,13 +93,13 @@ class AlignmentFit {
     Actuator actuator{};
     std::vector<double> values;
   };
-  /// Fits to all but one fold, and the sums of the fold.
-  struct Fold {
-    NormalEquations sums;
-    Eigen::MatrixXd coefficients;  // term × target
+  struct HeldOut {                              // of the fits to all folds but one
+    std::vector<Eigen::MatrixXd> coefficients;  // [fold]: term × target
+    Eigen::ArrayXXd errors;                     // fold × target: mean squares
+    Eigen::ArrayXd variance;                    // of the targets, over all folds
   };
   void take(const AlignmentGuess& guess);
-  std::vector<Fold> fits();
+  HeldOut held_out() const;
   NormalEquations sums_of(std::size_t fold) const;
   double log_kernel_error(std::span<const std::size_t> rows) const;
   Eigen::MatrixXd kernel_of(std::span<const std::size_t> rows) const;

@@ -2,7 +2,6 @@
 #include "model/alignment_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -16,7 +15,6 @@ namespace kelpie {
 namespace {
 
 constexpr const auto& kSearch = kModelTuning.alignment;
-constexpr std::array<double, 2> kRefined{1.4142135623730951, 1.189207115002721};  // √2, √√2
 
 template <typename Change>
 AlignmentGuess with_each(AlignmentGuess guess, const Change& change) {
@@ -182,7 +180,7 @@ AlignmentSearch::Scored AlignmentSearch::lagged(const Scored& from) {
     guesses.push_back(with_each(from.guess, [&](Actuator& actuator) { actuator.lag_s = lag_s; }));
   }
   Scored together = step(from, guesses, Folds::middle);
-  for (const double factor : kRefined) {
+  for (const double factor : kSearch.refining) {
     const auto by = [&](double times) {
       return with_each(together.guess, [&](Actuator& actuator) { actuator.lag_s *= times; });
     };
@@ -236,7 +234,7 @@ AlignmentSearch::Scored AlignmentSearch::command(Scored from, std::size_t k) {
 // explains less: a longer delay that explains more again goes with an oscillation of the vehicle.
 AlignmentSearch::Scored AlignmentSearch::delayed(const Scored& from, std::size_t k) {
   std::vector<Scored> tried{from};
-  for (const double factor : kRefined) {
+  for (const double factor : kSearch.refining) {
     tried.front() = refined(std::move(tried.front()), k, &Actuator::lag_s, factor);
   }
   double delay_s = 0.5 / rate_hz_;
@@ -258,7 +256,7 @@ AlignmentSearch::Scored AlignmentSearch::delayed(const Scored& from, std::size_t
 }
 
 AlignmentSearch::Scored AlignmentSearch::refined(Scored from) {
-  for (const double factor : kRefined) {
+  for (const double factor : kSearch.refining) {
     for (double Actuator::*const number : {&Actuator::lag_s, &Actuator::rate}) {
       for (std::size_t k = 0; k < range_.size(); ++k) {
         from = refined(std::move(from), k, number, factor);

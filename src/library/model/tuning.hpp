@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,12 +15,14 @@ inline constexpr struct ModelTuning {
   /// Search of an alignment (model/alignment.hpp). Grids are by halves and doubles, since a factor
   /// of two in a time constant costs a few percent of the error; a refinement follows.
   struct Alignment {
-    double farthest_s = 1.0;                ///< lags searched, ±; by hand
-    double most_rows_away = 1e6;            ///< bound of a lag in rows; by hand
-    int steps_per_side = 10;                ///< lags tried on either side of 0; by hand
-    double pulse_side = 0.25;               ///< of the range of pulses, on either side of rest
-    double longest_lag = 0.02;              ///< of the duration of the rows: an actuator's lag
-    double longest_lag_s = 120.0;           ///< s, of an actuator; by hand
+    double farthest_s = 1.0;       ///< lags searched, ±; by hand
+    double most_rows_away = 1e6;   ///< bound of a lag in rows; by hand
+    int steps_per_side = 10;       ///< lags tried on either side of 0; by hand
+    double pulse_side = 0.25;      ///< of the range of pulses, on either side of rest
+    double longest_lag = 0.02;     ///< of the duration of the rows: an actuator's lag
+    double longest_lag_s = 120.0;  ///< s, of an actuator; by hand
+    /// √2, √√2: between values tried of a lag or a rate; by hand
+    std::array<double, 2> refining{1.4142135623730951, 1.189207115002721};
     int rate_halvings = 8;                  ///< rates tried: the whole range in 1 s to 128 s
     int delay_doublings = 6;                ///< delays tried, from half a row on
     std::size_t rows_per_coefficient = 10;  ///< least rows of a fit; by hand

@@ -215,11 +215,11 @@ double PoseWindow::mean_of(const SignalHistory& signal, Interpolation between, V
     const bool has_next = i + 1 < signal.size();
     const double next_s = has_next ? signal.time_s(i + 1) : end_s;
     const double until_s = std::min(next_s, end_s);
-    if (next_s - signal.time_s(i) > gap_s_ || (between == Interpolation::line && !has_next)) {
+    if (next_s - signal.time_s(i) > gap_s_ || (between != Interpolation::hold && !has_next)) {
       return kNoValue;
     }
     double here = value(signal.value(i));
-    if (between == Interpolation::line) {
+    if (between != Interpolation::hold) {
       const double share =
           (0.5 * (from_s + until_s) - signal.time_s(i)) / (next_s - signal.time_s(i));
       here += share * (value(signal.value(i + 1)) - here);

@@ -143,8 +143,9 @@ SampleStream::State::State(const StreamPlan& plan)
     const std::size_t source = plan_.source(derived.of);
     ahead_s_[source] = plan_.derivative.ahead_s();
     back_s_[source] = plan_.derivative.back_s();
-    known_by_[source] =
-        known_by_[source] == Interpolation::hold ? Interpolation::line : known_by_[source];
+    if (known_by_[source] == Interpolation::hold) {
+      known_by_[source] = Interpolation::line;
+    }
   }
   use_pose();
   for (const std::vector<std::string>* const names : {&plan_.inputs, &plan_.targets}) {

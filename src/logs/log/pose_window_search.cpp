@@ -152,7 +152,7 @@ class PoseWindowSearch {
         targets.push_back(std::move(columns[k]));
       } else if (std::ranges::count(names, name) > 0) {
         velocities.push_back(std::move(columns[k]));
-      } else if (source == plan.sources.end() || source->between == Interpolation::line) {
+      } else if (source == plan.sources.end() || source->between != Interpolation::hold) {
         others.push_back(std::move(columns[k]));
       } else {
         std::vector<double>& square = commands.emplace_back(columns[k]);

@@ -245,9 +245,10 @@ TEST(PoseWindow, CommandsAndStatesAreMeansWithTheSameWeights) {
   const std::vector<Recorded> sources{
       {"z", [](double t) { return t; }},
       {"n", [](double t) { return t < 9.9 ? 0.0 : 4.0; }, 5.0, 0.0, 0.0, Interpolation::hold},
-      {"phi", [](double t) { return wrapped(3.1 + 0.02 * t); }}};
+      {"phi", [](double t) { return wrapped(3.1 + 0.02 * t); }},
+      {"volts", [](double t) { return 2.0 * t; }, 5.0, 0.0, 0.0, Interpolation::curve}};
   StreamPlan plan = plan_of(sources, {.position = {"", "", "z"}, .attitude = {"phi", "", ""}});
-  plan.inputs = {"w", "n", "phi"};
+  plan.inputs = {"w", "n", "phi", "volts"};
   const Rows rows = rows_of(plan, sources);
   expect_near(
       column(plan, rows, "n"), rows,
@@ -257,6 +258,8 @@ TEST(PoseWindow, CommandsAndStatesAreMeansWithTheSameWeights) {
       1e-9);
   expect_near(
       column(plan, rows, "phi"), rows, [](double t) { return wrapped(3.1 + 0.02 * t); }, 1e-3);
+  expect_near(
+      column(plan, rows, "volts"), rows, [](double t) { return 2.0 * t; }, 1e-3);
 }
 
 TEST(PoseWindow, ASilenceOrAMissingValueMakesNoRowOverIt) {
