@@ -212,9 +212,9 @@ std::vector<std::size_t> AlignmentFit::explained_rows(const AlignmentGuess& gues
   return explained;
 }
 
-double AlignmentFit::log_kernel_error(const AlignmentGuess& guess) {
+Eigen::ArrayXXd AlignmentFit::log_kernel_errors(const AlignmentGuess& guess) {
   take(guess);
-  double sum = 0.0;
+  Eigen::ArrayXXd errors(static_cast<Eigen::Index>(kParts), 1);
   for (std::size_t part = 0; part < kParts; ++part) {
     std::vector<std::size_t> rows;
     const std::size_t begin = rows_.size() * part / kParts;
@@ -223,9 +223,9 @@ double AlignmentFit::log_kernel_error(const AlignmentGuess& guess) {
     for (std::size_t i = 0; i < count; ++i) {
       rows.push_back(begin + i * size / count);
     }
-    sum += log_kernel_error(rows);
+    errors(static_cast<Eigen::Index>(part), 0) = log_kernel_error(rows);
   }
-  return sum / static_cast<double>(kParts);
+  return errors;
 }
 
 double AlignmentFit::log_kernel_error(std::span<const std::size_t> rows) const {

@@ -83,9 +83,9 @@ class AlignmentFit {
   std::vector<std::size_t> explained_rows(const AlignmentGuess& guess);
 
   /// Mean error of kernel ridge regression, which also follows motion outside the terms, on a few
-  /// rows of each fifth of the log, so that a change of the vehicle affects one fifth only.
-  /// Cost: 25 fits to 240 rows.
-  double log_kernel_error(const AlignmentGuess& guess);
+  /// rows of each fifth of the log, so that a change of the vehicle affects one fifth only: fifth
+  /// × 1. Cost: 25 fits to 240 rows.
+  Eigen::ArrayXXd log_kernel_errors(const AlignmentGuess& guess);
 
  private:
   struct Effect {  // of a command, as last asked for

@@ -280,9 +280,9 @@ AlignmentSearch::Scored AlignmentSearch::refined(Scored from, std::size_t k,
 // Where a kernel describes the vehicle better than the terms of least squares, the terms may like
 // commands that merely go with the vehicle; elsewhere the kernel, of fewer rows, has no say.
 bool AlignmentSearch::kernel_agrees(const Scored& present, const Scored& other) {
-  const double before = fit_.log_kernel_error(present.guess);
-  return before >= present.errors.mean() ||
-         fit_.log_kernel_error(other.guess) < before + kSearch.least_gain;
+  const Eigen::ArrayXXd before = fit_.log_kernel_errors(present.guess);
+  return before.mean() >= present.errors.mean() ||
+         !FoldEvidence(fit_.log_kernel_errors(other.guess) - before).is_clear();
 }
 
 void AlignmentSearch::decide(const Scored& present, const std::vector<Scored>& better,
