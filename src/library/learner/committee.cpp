@@ -359,8 +359,9 @@ void Committee::forget_usual_errors() {
 }
 
 RescaleStatus Committee::rescale(const SampleMap& map) {
-  if (!to_learn_.done()) {
-    return RescaleStatus::under_way;  // one long job at a time
+  if (!to_learn_.done()) {  // one long job at a time
+    relearn_slice();
+    return RescaleStatus::under_way;
   }
   const RescaleStatus step = learner_.rescale(map);
   if (step == RescaleStatus::switched && !alone()) {

@@ -83,8 +83,8 @@ class Committee final : public OnlineRegressor {
 
   /// Moves to another scale, as AdaptiveSvr::rescale(). When the learner has switched, linear
   /// members take the scale over and forget nothing. Kernels have other places in another scale:
-  /// `precise` and `memory` relearn the learner's buffer. Waits while an earlier relearning is
-  /// under way.
+  /// `precise` and `memory` relearn the learner's buffer. An earlier relearning under way comes
+  /// first, a slice per call.
   RescaleStatus rescale(const SampleMap& map);
 
   /// The vehicle enters a range where errors are not known yet: large errors are no outliers.

@@ -29,8 +29,8 @@ class DynamicsAxis final : public Scaled {
                const TermSet& terms, std::optional<AxisScaling> scaling = {});
 
   /// Scaled::expect(); errors may be as large as these samples.
-  void expect(const ThinnedRows& samples) {
-    Scaled::expect(samples);
+  void expect(const ThinnedRows& samples, std::size_t first) {
+    Scaled::expect(samples, first);
     learner_.forget_usual_errors();
   }
 

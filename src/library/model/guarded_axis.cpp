@@ -90,8 +90,8 @@ GuardedAxis::GuardedAxis(std::size_t inputs, const SharedSettings& shared,
                          std::optional<AxisScaling> scaling)
     : arguments_{inputs, shared, settings, terms, std::move(scaling)},
       axes_{arguments_.make(), arguments_.make_early()},
-      early_(shared.track > 0.0 && !arguments_.scaling),
-      candidate_serves_(early_),
+      other_(shared.track > 0.0 && !arguments_.scaling ? Other::early : Other::none),
+      candidate_serves_(other_ == Other::early),
       expected_target_(terms),
       guarded_(shared.track > 0.0),
       first_(inputs),
@@ -118,7 +118,7 @@ void GuardedAxis::alert(double since_s, bool another) {
 void GuardedAxis::apply_change(std::span<const CommandGain> gains, std::span<const double> step,
                                const Decision& news) {
   trusted().apply_change(gains, step, news);
-  if (probation_ || former_kept_) {
+  if (on_probation() || other_ == Other::former) {
     candidate().apply_change(gains, step, news);
     begun_with_.changes += news.changed ? 1 : 0;  // one change of the vehicle, in both tallies
     begun_with_.withdrawn += news.withdrawn ? 1 : 0;
@@ -128,7 +128,7 @@ void GuardedAxis::apply_change(std::span<const CommandGain> gains, std::span<con
 void GuardedAxis::expect_vehicle(std::vector<double> coefficients) {
   expected_ = std::move(coefficients);
   trusted().expect_vehicle(expected_);
-  if (early_) {
+  if (other_ == Other::early) {
     candidate().expect_vehicle(expected_);
   }
 }
@@ -136,7 +136,8 @@ void GuardedAxis::expect_vehicle(std::vector<double> coefficients) {
 void GuardedAxis::resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) {
   trusted().resume_from(scaling, said, t);
   candidate() = trusted();
-  early_ = candidate_serves_ = false;
+  other_ = Other::none;
+  candidate_serves_ = false;
   young_until_ = -kNever;
 }
 
@@ -162,7 +163,7 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   const bool another_serves = refused != candidate_serves_;  // than the axis that learns
   const Prediction said = refused || another_serves ? assess(x) : Prediction{};
   const bool had_model = another_serves && in_service().status().ready;
-  const bool early = early_;
+  const bool early = other_ == Other::early;
   Decision decision = refused ? learn_doubted(x, y, t, said) : learn_trusted(x, y, t);
   if (another_serves) {
     decision.prediction = said;
@@ -171,7 +172,8 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   decision.early = early && decision.had_model;
   feed();
   look(t);
-  candidate_serves_ = early_ || (probation_ && trusted().scaling() != nullptr && trusted().far(x));
+  const bool is_far = trusted().scaling() != nullptr && trusted().far(x);
+  candidate_serves_ = other_ == Other::early || (on_probation() && is_far);
   return decision;
 }
 
@@ -187,7 +189,7 @@ bool GuardedAxis::expected(std::span<const double> x, double y) const {
 // An implausible sample, or one among implausible samples.
 bool GuardedAxis::doubtful(std::span<const double> x, double y, double t) {
   const bool implausible = trusted().scaling() != nullptr && !plausible(x, y, t);
-  if (implausible && recent_ <= kGuard.company && !former_tried_) {
+  if (implausible && recent_ <= kGuard.company && other_ != Other::former_on_trial) {
     evidence_.begin_stretch();
   }
   recent_ += kGuard.recent * ((implausible ? 1.0 : 0.0) - recent_);
@@ -208,7 +210,7 @@ void GuardedAxis::count_time(bool refused, double t) {
 Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double t) {
   if (++passed_ > run_) {
     run_ = 0;
-    if (!probation_) {
+    if (!on_probation()) {
       refused_.clear();
     }
   }
@@ -223,7 +225,7 @@ Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double 
   }
   const Decision decision = trusted().update(x, y, t);
   end_early();
-  if (early_) {
+  if (other_ == Other::early) {
     candidate().update(x, y, t);
   }
   return decision;
@@ -231,8 +233,9 @@ Decision GuardedAxis::learn_trusted(std::span<const double> x, double y, double 
 
 // Once the trusted axis has learned the samples that were held back.
 void GuardedAxis::end_early() {
-  if (early_ && !trusted().holds_back()) {
-    early_ = candidate_serves_ = false;
+  if (other_ == Other::early && !trusted().holds_back()) {
+    other_ = Other::none;
+    candidate_serves_ = false;
     candidate() = trusted();  // allocates now what a candidate needs
   }
 }
@@ -240,11 +243,11 @@ void GuardedAxis::end_early() {
 Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double t,
                                     const Prediction& said) {
   trusted_last_ = false;
-  if (probation_ && !feeds_trusted_ && !former_tried_ && t - doubted_s_ > kGuard.stale_s) {
+  if (other_ == Other::candidate && !feeds_trusted_ && t - doubted_s_ > kGuard.stale_s) {
     renew_candidate(t);
   }
   doubted_s_ = t;
-  if (former_tried_ && run_ == 0) {
+  if (other_ == Other::former_on_trial && run_ == 0) {
     refused_.clear();  // those before are learned
   }
   refused_.add(x, y, t);
@@ -252,10 +255,10 @@ Decision GuardedAxis::learn_doubted(std::span<const double> x, double y, double 
                     .prediction = said,
                     .had_model = in_service().status().ready,
                     .kkt_gap = in_service().status().kkt_gap};
-  const bool fed = probation_ && !feeds_trusted_;
-  if (fed && feed_.size() > 0) {
+  const bool fed = on_probation() && !feeds_trusted_;
+  if (fed && (feed_.size() > 0 || candidate().awaits_scale())) {
     feed_.hold(x, y, t);
-  } else if (probation_ &&
+  } else if (on_probation() &&
              (candidate().changes_scale() || arguments_.scaling || candidate().plausible(x, y))) {
     decision = learn_in_candidate(x, y, t);
   } else {
@@ -276,7 +279,7 @@ Decision GuardedAxis::learn_in_candidate(std::span<const double> x, double y, do
   decision.recalled = 0;
   if (share_ > kGuard.confirmed_share || (evidence_.convincing() && t >= convincing_from_)) {
     trust_candidate(t);
-  } else if (former_tried_ && evidence_.rejects()) {
+  } else if (other_ == Other::former_on_trial && evidence_.rejects()) {
     renew_candidate(t);
   }
   return decision;
@@ -292,17 +295,16 @@ void GuardedAxis::doubt(double t) {
   if (run_ < kGuard.least_refused || t - run_since_ < kGuard.believed_s) {
     return;
   }
-  if (!former_tried_) {
+  if (!on_probation()) {
     begin_candidate(t);
-  } else if (!feeds_trusted_) {  // out of the former scale, too: its axis follows
+  } else if (!feeds_trusted_) {  // out of the candidate's scale, too: the candidate follows
     run_ = 0;
-    teach_refused();
+    teach_refused(run_since_);
   }
 }
 
-void GuardedAxis::begin_probation(double t) {
-  early_ = false;
-  probation_ = true;
+void GuardedAxis::begin_probation(Other other, double t) {
+  other_ = other;
   evidence_ = {};
   convincing_from_ = t + kGuard.convinced_s;
   doubted_s_ = t;
@@ -312,18 +314,21 @@ void GuardedAxis::begin_probation(double t) {
 
 void GuardedAxis::begin_candidate(double t) {
   drop_candidate();
-  begin_probation(t);
-  former_kept_ = false;
+  begin_probation(Other::candidate, t);
   candidate() = trusted();
   begun_with_ = trusted().status().tally;
   next_look_ = t + kGuard.look_s;
   feeds_trusted_ = false;
-  teach_refused();
+  teach_refused(-kNever);
 }
 
-void GuardedAxis::teach_refused() {
-  candidate().expect(refused_);
-  for (std::size_t i = 0; i < refused_.size(); ++i) {
+void GuardedAxis::teach_refused(double since_s) {
+  std::size_t first = 0;
+  while (first < refused_.size() && refused_[first].t < since_s) {
+    ++first;
+  }
+  candidate().expect(refused_, first);
+  for (std::size_t i = first; i < refused_.size(); ++i) {
     feed_.hold(refused_[i].x, refused_[i].y, refused_[i].t);
   }
 }
@@ -341,10 +346,10 @@ void GuardedAxis::renew_candidate(double t) {
 }
 
 void GuardedAxis::drop_candidate() {
-  if (probation_) {
+  if (on_probation()) {
     gone_.add(candidate().status().tally);
     gone_.subtract(begun_with_);
-    probation_ = former_tried_ = false;
+    other_ = Other::none;
   }
 }
 
@@ -352,10 +357,9 @@ void GuardedAxis::trust_candidate(double t) {
   gone_.add(trusted().status().tally);
   gone_.subtract(begun_with_);
   trusted_ = 1 - trusted_;
-  probation_ = false;
-  former_kept_ = t > young_until_;
+  other_ = t > young_until_ ? Other::former : Other::none;
   guarded_ = !arguments_.scaling;
-  if (former_kept_) {
+  if (other_ == Other::former) {
     first_.clear();  // what comes from now on tells whether the former axis was right
   } else {
     std::swap(first_, refused_);
@@ -366,7 +370,6 @@ void GuardedAxis::trust_candidate(double t) {
   share_ = 0.0;
   // A scale in which samples out of another are explained is none of garbage.
   young_until_ = evidence_.convincing() ? t : t + kGuard.confirmed_young_s;
-  former_tried_ = false;
   next_look_ = t + kGuard.look_s;
 }
 
@@ -375,15 +378,14 @@ void GuardedAxis::trust_candidate(double t) {
 // samples out of the new scale.
 void GuardedAxis::begin_anew(double t) {
   const std::size_t first = first_alike(*trusted().scaling(), first_);
-  if (former_tried_) {
+  if (other_ == Other::former_on_trial) {
     gone_.add(trusted().status().tally);
   } else {
     drop_candidate();
     trusted_ = 1 - trusted_;
     begun_with_ = {};
   }
-  begin_probation(t);
-  former_tried_ = true;
+  begin_probation(Other::former_on_trial, t);
   expected_target_.clear();
   trusted() = arguments_.make();
   trusted().set_past_models(given_);
@@ -402,9 +404,7 @@ void GuardedAxis::return_to_former(double t) {
   trusted_ = 1 - trusted_;
   gone_.add(begun_with_);
   gone_.subtract(trusted().status().tally);
-  begin_probation(t);
-  former_kept_ = false;
-  former_tried_ = true;
+  begin_probation(Other::former_on_trial, t);
   young_until_ = t;
   feed_trusted(first_alike(*candidate().scaling(), first_));
   first_.clear();
@@ -422,7 +422,11 @@ void GuardedAxis::feed_trusted(std::size_t first) {
 
 void GuardedAxis::feed() {
   DynamicsAxis& learner = feeds_trusted_ ? trusted() : candidate();
-  for (std::size_t k = 0; k < kGuard.per_update && feed_.size() > 0; ++k) {
+  const auto waits = [&] { return !feeds_trusted_ && learner.awaits_scale(); };
+  for (std::size_t k = 0; k < kGuard.slices && feed_.size() > 0 && waits(); ++k) {
+    learner.change_scale();
+  }
+  for (std::size_t k = 0; k < kGuard.per_update && feed_.size() > 0 && !waits(); ++k) {
     const WarmUp::Sample row = feed_[0];
     if (!feeds_trusted_ || trusted().scaling() == nullptr || plausible(row.x, row.y, row.t)) {
       learner.update(row.x, row.y, row.t);
@@ -443,10 +447,10 @@ void GuardedAxis::look(double t) {
   if (t > young_until_) {
     first_.clear();
   } else if (too_large(trusted(), first_)) {
-    former_kept_ ? return_to_former(t) : begin_anew(t);
+    other_ == Other::former ? return_to_former(t) : begin_anew(t);
     return;
   }
-  if (probation_ && !former_tried_ && too_large(candidate(), refused_)) {
+  if (other_ == Other::candidate && too_large(candidate(), refused_)) {
     refused_.drop_oldest(first_alike(*candidate().scaling(), refused_));
     begin_candidate(t);
   }
@@ -477,10 +481,10 @@ bool GuardedAxis::too_large(const DynamicsAxis& axis, const ThinnedRows& rows) {
 
 Status GuardedAxis::status() const {
   Status status = in_service().status();
-  status.early = early_ && status.ready;
+  status.early = other_ == Other::early && status.ready;
   status.tally = trusted().status().tally;
   status.tally.add(gone_);
-  if (probation_) {
+  if (on_probation()) {
     status.tally.add(candidate().status().tally);
     status.tally.subtract(begun_with_);
   }
@@ -512,6 +516,9 @@ bool GuardedAxis::Evidence::convincing() const {
 }
 
 bool GuardedAxis::Evidence::rejects() const {
+  if (unexplained > kGuard.worse * spread) {  // too large a scale tells no movement
+    return samples >= kGuard.least_explained;
+  }
   const bool nothing = unexplained > kGuard.unexplained * spread;
   return moves() && samples >= (nothing ? kGuard.least_explained : kGuard.least_rejected);
 }
@@ -532,20 +539,17 @@ void GuardedAxis::visit(Archive& archive) {
   archive.list(expected_, arguments_.terms.size() + 1, [&](double& one) { archive.number(one); });
   archive.whole(trusted_, 0, 1);
   archive.part("trusted", trusted());
-  archive.flag(early_);
-  archive.flag(probation_);
-  archive.flag(former_kept_);
-  archive.flag(former_tried_);
-  archive.require(probation_ || !former_tried_, "tries a former axis that is no candidate");
-  const bool another = early_ || probation_ || former_kept_;
-  if (another) {
+  archive.choice(other_, Other{}, Other::former_on_trial);
+  if (other_ != Other::none) {
     archive.part("candidate", candidate());
-    archive.require(early_ || candidate().scaling() != nullptr, "is a candidate without a scale");
+    archive.require(other_ == Other::early || candidate().scaling() != nullptr,
+                    "is a candidate without a scale");
   } else if (archive.loading()) {
     candidate() = trusted();
   }
   archive.flag(candidate_serves_);
-  archive.require(early_ || probation_ || !candidate_serves_, "serves without a candidate");
+  archive.require(other_ == Other::early || on_probation() || !candidate_serves_,
+                  "serves without a candidate");
   archive.part("expected target", expected_target_);
   archive.flag(guarded_);
   archive.part("first", first_);

@@ -26,10 +26,11 @@ namespace kelpie {
 /// candidate follows. The candidate is in service after inputs more than 10 standard deviations
 /// away, the trusted axis after all other samples. After a minute without such samples the
 /// candidate begins as a copy again, since the trusted axis has learned meanwhile, and learns the
-/// implausible samples kept. The candidate takes the place of the trusted axis when implausible
-/// samples have come for 36 s (garbage of a sensor lasts up to 30 s), or when the candidate
-/// explains half of the variance of these samples, within stretches of them: a sensor that is stuck
-/// explains its next stretch.
+/// implausible samples kept. Samples beyond the scale of the candidate, too, for half a second,
+/// widen this scale; samples wait until the scale is in use. The candidate takes the place of the
+/// trusted axis when implausible samples have come for 36 s (garbage of a sensor lasts up to 30 s),
+/// or when the candidate explains half of the variance of these samples, within stretches of them:
+/// a sensor that is stuck explains its next stretch.
 ///
 /// A scale may be too large as well, after garbage in the first samples. During the first 90 s, and
 /// for 60 s after a candidate took over that did not explain half, the guard looks every 5 s at the
@@ -120,6 +121,16 @@ class GuardedAxis final : public OnlineRegressor {
     DynamicsAxis make_early() const;  ///< With a scale of few samples.
   };
 
+  /// The role of the axis that is not trusted.
+  enum class Other : std::uint8_t {
+    none,       ///< kept for the next candidate
+    early,      ///< in service with a scale of few samples, until the trusted axis has learned
+                ///< the samples held back
+    candidate,  ///< on probation, begun as a copy of the trusted axis
+    former,     ///< trusted until a candidate took over
+    former_on_trial,  ///< on probation, trusted until a new axis began
+  };
+
   /// How well a candidate explains the samples that only the candidate learns.
   struct Evidence {
     double samples = 0.0;
@@ -135,6 +146,9 @@ class GuardedAxis final : public OnlineRegressor {
     void visit(Archive& archive);
   };
 
+  bool on_probation() const {
+    return other_ == Other::candidate || other_ == Other::former_on_trial;
+  }
   const DynamicsAxis& trusted() const { return axes_[trusted_]; }
   DynamicsAxis& trusted() { return axes_[trusted_]; }
   const DynamicsAxis& candidate() const { return axes_[1 - trusted_]; }
@@ -148,10 +162,10 @@ class GuardedAxis final : public OnlineRegressor {
   bool doubtful(std::span<const double> x, double y, double t);
   void count_time(bool refused, double t);
   void doubt(double t);
-  void begin_probation(double t);
+  void begin_probation(Other other, double t);
   void begin_candidate(double t);
   void renew_candidate(double t);
-  void teach_refused();
+  void teach_refused(double since_s);
   void drop_candidate();
   void trust_candidate(double t);
   void begin_anew(double t);
@@ -166,12 +180,8 @@ class GuardedAxis final : public OnlineRegressor {
   std::vector<double> expected_;        ///< coefficients for a new axis; empty: none
   std::vector<StoredPastModel> given_;  ///< for a new axis; own past models are in a wrong scale
   std::size_t trusted_ = 0;             ///< number of the trusted axis
-  bool former_kept_ = false;            ///< the other axis was trusted until a candidate took over
-  bool probation_ = false;              ///< the other axis is a candidate
-  bool former_tried_ = false;           ///< the candidate is the axis before begin_anew()
-  bool early_;             ///< the candidate learns as well, until the trusted axis has learned the
-                           ///< samples held back
-  bool candidate_serves_;  ///< early, or the inputs of the last sample were far away
+  Other other_;
+  bool candidate_serves_;           ///< early, or the inputs of the last sample were far away
   ExpectedTarget expected_target_;  ///< whatever axis is trusted
   bool guarded_;  ///< false without `track`, and once a given scale has proved too small
   bool trusted_last_ = true;

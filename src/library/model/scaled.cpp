@@ -43,7 +43,8 @@ Decision Scaled::update(std::span<const double> x, double y, double t) {
   if (scaling() == nullptr) {
     return hold_back(x, y, t);
   }
-  follow(x, y);
+  scale_.observe(x, y);
+  change_scale();
   return warm_up_.size() > 0 ? stand_in_line(x, y, t) : learn(*scaling(), x, y, t);
 }
 
@@ -105,9 +106,9 @@ void Scaled::learn_held(Decision& decision) {
   warm_up_.drop_oldest(count);
 }
 
-void Scaled::expect(const ThinnedRows& samples) {
-  scale_.lighten(std::max<std::size_t>(2, samples.size()));
-  for (std::size_t i = 0; i < samples.size(); ++i) {
+void Scaled::expect(const ThinnedRows& samples, std::size_t first) {
+  scale_.lighten(std::max<std::size_t>(2, samples.size() - first));
+  for (std::size_t i = first; i < samples.size(); ++i) {
     scale_.observe(samples[i].x, samples[i].y);
   }
 }
@@ -126,8 +127,7 @@ Decision Scaled::learn(const AxisScaling& scaling, std::span<const double> x, do
   return decision;
 }
 
-void Scaled::follow(std::span<const double> x, double y) {
-  scale_.observe(x, y);
+void Scaled::change_scale() {
   if (scale_.next() != nullptr) {
     scale_.set_out();
   }

@@ -45,14 +45,21 @@ class Scaled : public OnlineRegressor {
   bool plausible(std::span<const double> x, double y) const { return scale_.plausible(x, y); }
   bool far(std::span<const double> x) const { return scale_.far(x); }
 
-  /// The scale is to suit further samples, which count as much as all samples so far: learns the
-  /// scale alone. Requires scaling(). Allocates nothing.
-  void expect(const ThinnedRows& samples);
+  /// The scale is to suit further samples, those from `first` on, which count as much as all
+  /// samples so far: learns the scale alone. Requires scaling(). Allocates nothing.
+  void expect(const ThinnedRows& samples, std::size_t first);
 
   /// Whether first samples are held back that the learner has still to learn.
   bool holds_back() const { return scaling() == nullptr || warm_up_.size() > 0; }
 
   bool changes_scale() const { return scale_.on_the_way(); }  ///< A change of scale is under way.
+
+  /// Whether the next scale is not in use yet: a sample is learned in the scale that is too small.
+  bool awaits_scale() const { return changes_scale() && before_scaling() == nullptr; }
+
+  /// A slice of a change of scale: of the change under way, or of one that is due. update() does
+  /// the same. Requires scaling(). Allocates as update().
+  void change_scale();
 
  protected:
   /// Requires inputs <= kMostInputs.
@@ -85,7 +92,6 @@ class Scaled : public OnlineRegressor {
   bool find_scale();
   void learn_held(Decision& decision);
   Decision learn(const AxisScaling& scaling, std::span<const double> x, double y, double t);
-  void follow(std::span<const double> x, double y);
 
   ScaleTracker scale_;
   WarmUp warm_up_;

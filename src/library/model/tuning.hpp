@@ -115,7 +115,9 @@ inline constexpr struct ModelTuning {
     std::size_t probes = 32;      ///< samples of the half that the axis predicts
     std::size_t least_half = 10;  ///< samples in the half that is looked at
     double unexplained = 0.85;    ///< of the mean deviation, of a scale too large
+    double worse = 2.0;           ///< times the deviations from the mean: no model; by hand
     std::size_t per_update = 3;   ///< samples that a new axis learns per update
+    std::size_t slices = 10;      ///< of a change of scale that samples wait for, per update
   } guard;
 
   /// The second opinion on implausible targets (model/expected_target.hpp).
