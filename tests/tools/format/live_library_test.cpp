@@ -144,7 +144,10 @@ TEST(LiveLibrary, FollowsTheLearnerFromTheExportOn) {
     shared.predict(x, told);
     const auto [half_width, novelty] = library.assess<double>(x, 2);
     for (std::size_t k = 0; k < 2; ++k) {
-      EXPECT_NEAR(half_width[k], told[k].upper - told[k].value, 1e-12 * (1.0 + half_width[k]));
+      const double told_half_width = told[k].upper - told[k].value;
+      if (half_width[k] != told_half_width) {  // both infinite: an axis of few errors
+        EXPECT_NEAR(half_width[k], told_half_width, 1e-12 * (1.0 + told_half_width));
+      }
       EXPECT_NEAR(novelty[k], told[k].novelty, 0.02);
     }
   }
