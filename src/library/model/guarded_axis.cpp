@@ -172,8 +172,8 @@ Decision GuardedAxis::update(std::span<const double> x, double y, double t) {
   decision.early = early && decision.had_model;
   feed();
   look(t);
-  const bool is_far = trusted().scaling() != nullptr && trusted().far(x);
-  candidate_serves_ = other_ == Other::early || (on_probation() && is_far);
+  candidate_serves_ = other_ == Other::early ||
+                      (on_probation() && trusted().scaling() != nullptr && trusted().far(x));
   return decision;
 }
 

@@ -236,8 +236,7 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
     case study::ScaleSource::vehicle_file:
       remarks.emplace_back(
           "A log tells mass and added mass in surge as a sum: the added mass is the vehicle "
-          "file's, "
-          "taken as exact. --thrust or --surge-added-mass gives another scale.");
+          "file's, taken as exact. --thrust or --surge-added-mass gives another scale.");
       break;
     case study::ScaleSource::thrust:
     case study::ScaleSource::inertia:
