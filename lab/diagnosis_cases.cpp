@@ -28,6 +28,10 @@ class Maker {
     to.effectiveness(static_cast<Eigen::Index>(i)) = 1.0 - share;
     return told(CauseKind::thruster, kFirstThruster + i, 1.0 - share);
   }
+  static Cause all_thrusters(vehicle::Configuration& to, double share) {
+    to.effectiveness.setConstant(1.0 - share);
+    return told(CauseKind::all_thrusters, 0, 1.0 - share);
+  }
   static Cause drag(vehicle::Configuration& to, std::size_t axis, double share) {
     to.damping_factor(kBody[axis]) = 1.0 + share;
     return told(CauseKind::drag, axis, 1.0 + share);
@@ -100,6 +104,7 @@ std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& veh
       add(fmt::format("scale {}", kSensorNames[i]), effect, false, scale);
       add(fmt::format("bias {}", kSensorNames[i]), effect, false, bias);
     }
+    add("all thrusters", effect, false, [&](To to) { return Maker::all_thrusters(to, share); });
     add("load", effect, false, [&](To to) { return maker.load(to, 0.0, share); });
     add("load ahead", effect, true, [&](To to) { return maker.load(to, 0.2, share); });
     add("force surge", effect, false, [&](To to) { return maker.brake(to, share); });
@@ -140,6 +145,8 @@ std::string case_name(const Cause& cause) {
       return fmt::format("bias {}", kSensorNames[cause.place]);
     case CauseKind::frozen:
       return fmt::format("frozen {}", kSensorNames[cause.place]);
+    case CauseKind::all_thrusters:
+      return "all thrusters";
   }
   return "";
 }

@@ -37,8 +37,9 @@ void show(Diagnosis& diagnosis, const vehicle::LogRow& row) {
 // Of the share that is left of each axis, against the true shares of thrust on the nominal matrix.
 double authority_error_of(const Diagnosis& diagnosis, const DiagnosisCase& of) {
   constexpr double kFull = 20.0;  // rev/s; thrust goes with the square, so any will do
-  const bool is_thrust = std::ranges::all_of(
-      of.truth, [](const Cause& cause) { return cause.kind == CauseKind::thruster; });
+  const bool is_thrust = std::ranges::all_of(of.truth, [](const Cause& cause) {
+    return cause.kind == CauseKind::thruster || cause.kind == CauseKind::all_thrusters;
+  });
   if (!is_thrust || !diagnosis.knows_thrust()) {
     return std::numeric_limits<double>::quiet_NaN();
   }
@@ -51,7 +52,9 @@ double authority_error_of(const Diagnosis& diagnosis, const DiagnosisCase& of) {
     for (const ThrusterEffect& one : authority.thrusters()) {
       const double range = std::max({one.nominal_ahead[i], one.nominal_astern[i], 0.0}) -
                            std::min({one.nominal_ahead[i], one.nominal_astern[i], 0.0});
-      const auto cause = std::ranges::find(of.truth, one.range.input, &Cause::place);
+      const auto cause = std::ranges::find_if(of.truth, [&](const Cause& truth) {
+        return truth.kind == CauseKind::all_thrusters || truth.place == one.range.input;
+      });
       nominal += range;
       left += cause == of.truth.end() ? range : cause->size * range;
     }

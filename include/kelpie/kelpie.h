@@ -152,7 +152,8 @@ typedef enum kelpie_cause_kind {
   KELPIE_FORCE = 3,        /**< constant in the body; size: acceleration of a target, in its unit */
   KELPIE_SENSOR_SCALE = 4, /**< scale error of a velocity; size: reading over truth */
   KELPIE_SENSOR_BIAS = 5,  /**< offset of a velocity; size: in its unit */
-  KELPIE_FROZEN = 6        /**< constant reading of a velocity; size: the reading */
+  KELPIE_FROZEN = 6,       /**< constant reading of a velocity; size: the reading */
+  KELPIE_ALL_THRUSTERS = 7 /**< all thrusters by one factor; size: share of the thrust before */
 } kelpie_cause_kind;
 
 /** The state of the explanation of a change. */
@@ -230,9 +231,9 @@ kelpie_status kelpie_shared_predict_with_jacobian(const kelpie_shared* shared, c
                                                   double* jacobian, int64_t* snapshot);
 
 /** From now on every update also renews a block: the content of a file of `kelpie export --live`,
- *  mapped for writing, which the library beside the file reads (docs/howto/controller.md). A block of 0
- *  bytes ends the service. The memory has to outlive the model or the service. KELPIE_BAD_INPUT on
- *  memory that is no block of this model. For the teaching thread. Allocates. */
+ *  mapped for writing, which the library beside the file reads (docs/howto/controller.md). A block
+ * of 0 bytes ends the service. The memory has to outlive the model or the service. KELPIE_BAD_INPUT
+ * on memory that is no block of this model. For the teaching thread. Allocates. */
 kelpie_status kelpie_shared_serve(kelpie_shared* shared, void* block, size_t bytes);
 
 /* A model.json: a model that no longer learns (kelpie::TrainedModel) */

@@ -17,21 +17,23 @@ namespace kelpie {
 
 /// A possible cause of a change of the vehicle, with one number as its size.
 enum class CauseKind : std::uint8_t {
-  thruster,      ///< loss of thrust; size: remaining share of the nominal thrust, 1 = all
-  drag,          ///< damping of an axis; size: factor on the damping
-  load,          ///< carried or dropped; size: factor on the inertia along the first axis
-  force,         ///< constant in the body; size: acceleration of an axis, in the target's unit
-  sensor_scale,  ///< scale error of a velocity; size: reading over truth
-  sensor_bias,   ///< offset of a velocity; size: in its unit
-  frozen,        ///< constant reading of a velocity; size: the reading
+  thruster,       ///< loss of thrust; size: remaining share of the nominal thrust, 1 = all
+  drag,           ///< damping of an axis; size: factor on the damping
+  load,           ///< carried or dropped; size: factor on the inertia along the first axis
+  force,          ///< constant in the body; size: acceleration of an axis, in the target's unit
+  sensor_scale,   ///< scale error of a velocity; size: reading over truth
+  sensor_bias,    ///< offset of a velocity; size: in its unit
+  frozen,         ///< constant reading of a velocity; size: the reading
+  all_thrusters,  ///< all thrusters by one factor (battery, limit); size: share of the thrust
+                  ///< before
 };
 
-inline constexpr std::size_t kCauseKinds = 7;  ///< number of CauseKind values
+inline constexpr std::size_t kCauseKinds = 8;  ///< number of CauseKind values
 
 /// One cause with its size and a 90 % interval of the size.
 struct Cause {
   CauseKind kind = CauseKind::thruster;
-  std::size_t place = 0;  ///< input of a thruster or sensor; target of drag or force; load: 0
+  std::size_t place = 0;  ///< input of a thruster or sensor; target of drag or force; else 0
   double size = 0.0;      ///< best estimate
   double lower = 0.0;     ///< lower end of the interval
   double upper = 0.0;     ///< upper end
@@ -148,7 +150,7 @@ std::string_view kind_name(CauseKind kind);       ///< "thruster", "sensor_scale
 std::string_view state_name(FindingState state);  ///< "named", "ambiguous", …
 
 /// The column of a cause: the input of a thruster or sensor, the target of a drag or force; empty
-/// for a load.
+/// for a load and all thrusters.
 std::string cause_column(const Cause& cause, const DiagnosisNames& names);
 
 /// "th2 gives 48 % of its thrust (41 to 55 %)".

@@ -19,7 +19,9 @@ namespace {
 
 static_assert(KELPIE_MOST_INPUTS == kMostInputs);
 static_assert(KELPIE_THRUSTER == static_cast<int>(CauseKind::thruster) &&
-              KELPIE_FROZEN == static_cast<int>(CauseKind::frozen) && kCauseKinds == 7);
+              KELPIE_FROZEN == static_cast<int>(CauseKind::frozen) &&
+              KELPIE_ALL_THRUSTERS == static_cast<int>(CauseKind::all_thrusters) &&
+              kCauseKinds == 8);
 static_assert(KELPIE_LOOKING == static_cast<int>(FindingState::looking) &&
               KELPIE_UNEXPLAINED == static_cast<int>(FindingState::none) && kFindingStates == 4);
 static_assert(KELPIE_MOST_FINDINGS == Diagnosis::kMostFindings);

@@ -53,7 +53,7 @@ ChangeMonitor::ChangeMonitor(const TermSet& terms, std::span<const std::size_t> 
       error_(axes()),
       effect_(axes()),
       usual_error_(axes()),
-      effects_{.of_cause = std::vector<double>(causes() + 2),
+      effects_{.of_cause = std::vector<double>(causes() + kCausesOfMany),
                .square = std::vector<double>(commands.size())},
       mixed_(causes()),
       usual_effect_(commands.size()) {
@@ -232,6 +232,7 @@ void ChangeMonitor::find_effects(std::span<const double> theta, std::size_t axis
   double& value = effects_.value;
   value = theta.back();
   double drag = 0.0;
+  double commanded = 0.0;
   for (std::size_t k = 0; k + 1 < columns(); ++k) {
     const double part = theta[k] * phi_[k];
     value += part;
@@ -240,9 +241,11 @@ void ChangeMonitor::find_effects(std::span<const double> theta, std::size_t axis
       effects_.square[factor.command] += factor.higher ? part : 0.0;
     }
     drag += term_drag_[k] == axis ? part : 0.0;
+    commanded += term_commands_[k].empty() ? 0.0 : part;
   }
   effect[commands_ + axis] = effect[causes()] = drag;
   effect[commands_ + axes() + axis] = effect[causes() + 1] = value;
+  effect[causes() + 2] = commanded;
 }
 
 // The start is compared with the fit, or with the vehicle before the change.
@@ -348,8 +351,9 @@ ChangeMonitor::Event ChangeMonitor::disbelieve_cause() {
 // One cause that explains nearly all that all causes together explain: errors of the equation of
 // motion favour many small changes, and a thruster that fails is more usual.
 std::optional<std::size_t> ChangeMonitor::clear_command(const ChangeStart& start) const {
-  const auto lone = std::ranges::max_element(start.lone, {}, &LoneCause::likelihood);
-  const auto command = static_cast<std::size_t>(lone - start.lone.begin());
+  const auto others = std::span(start.lone).first(causes() + 2);  // while idle, all are as one
+  const auto lone = std::ranges::max_element(others, {}, &LoneCause::likelihood);
+  const auto command = static_cast<std::size_t>(lone - others.begin());
   const bool clear = command < commands_ && scales_[command] &&
                      lone->likelihood >= kChange.lone_share * start.likelihood;
   return clear ? std::optional(command) : std::nullopt;

@@ -84,7 +84,7 @@ ChangeStart::ChangeStart(std::size_t commands, std::size_t axes, std::size_t coe
     : theta(coefficients),
       size(commands + 2 * axes),
       covariance(size.size() * size.size()),
-      lone(size.size() + 2),
+      lone(size.size() + kCausesOfMany),
       constant(axes),
       scatter(axes),
       tau(axes),
@@ -193,18 +193,26 @@ void ChangeStart::observe(std::size_t axis, const CauseEffects& effects, double 
   }
 }
 
+// Of a cause in the order of `lone`: one size, or as many as there are causes alike.
+std::span<double> ChangeStart::sizes_of(std::size_t cause, std::span<double> sizes) const {
+  const std::size_t axes = scatter.size();
+  const std::size_t commands = effect.size();
+  if (cause < size.size()) {
+    return sizes.subspan(cause, 1);
+  }
+  const std::size_t alike = cause - size.size();  // drag, inertia, commands
+  return alike < 2 ? sizes.subspan(commands + alike * axes, axes) : sizes.first(commands);
+}
+
 void ChangeStart::mix_sizes(std::span<double> sizes) const {
   const double most =
       std::max(likelihood, std::ranges::max_element(lone, {}, &LoneCause::likelihood)->likelihood);
   double sum = std::exp(likelihood - most);
   as_vector(sizes) = sum * as_vector(std::span<const double>(size));
-  const std::size_t axes = scatter.size();
   for (std::size_t k = 0; k < lone.size(); ++k) {
     const double weight = std::exp(lone[k].likelihood - most);
-    const bool one = k < size.size();
-    const std::size_t first = one ? k : effect.size() + (k - size.size()) * axes;
-    for (std::size_t c = first; c < first + (one ? 1 : axes); ++c) {
-      sizes[c] += weight * lone[k].size;
+    for (double& one : sizes_of(k, sizes)) {
+      one += weight * lone[k].size;
     }
     sum += weight;
   }

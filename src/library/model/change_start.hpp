@@ -18,10 +18,13 @@ struct LoneCause {
   void visit(Archive& archive);  ///< core/archive.hpp
 };
 
+/// Causes alike, counted beside each cause: drag of all axes, inertia of all axes, all commands.
+inline constexpr std::size_t kCausesOfMany = 3;
+
 /// The value of one axis at one row, and the effect of every cause on this value.
 struct CauseEffects {
   double value = 0.0;            ///< Θ₀ᵀφ
-  std::vector<double> of_cause;  ///< ∂value/∂s: of each cause, then the drag, then the inertia
+  std::vector<double> of_cause;  ///< ∂value/∂s, in the order of ChangeStart::lone
   std::vector<double> square;    ///< of each command: the part in higher powers of the command
 };
 
@@ -79,7 +82,7 @@ struct ChangeStart {
   std::vector<double> theta;       ///< Θ₀, axis after axis
   std::vector<double> size;        ///< mean of s
   std::vector<double> covariance;  ///< of s
-  std::vector<LoneCause> lone;     ///< each cause, then drag of all axes, then inertia of all
+  std::vector<LoneCause> lone;     ///< each cause, then kCausesOfMany
   /// The error of each axis that has been constant for some time, as the only cause: a disturbance,
   /// or the model's own error where the vehicle holds its speed.
   std::vector<LoneCause> constant;
@@ -88,6 +91,7 @@ struct ChangeStart {
   std::vector<CommandEffect> effect;  ///< of each command
 
  private:
+  std::span<double> sizes_of(std::size_t cause, std::span<double> sizes) const;
   void observe_lone(std::size_t axis, const CauseEffects& effects, double error, double noise,
                     double unchanged);
   LoneCause unknown_constant(std::size_t axis) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "motion/tuning.hpp"
 
@@ -14,6 +15,10 @@ namespace {
 // Whether two choices are one to who asks what happened.
 bool same_cause(const Explanation& a, const Explanation& b) {
   return a.kind == b.kind && (a.place == b.place || a.kind == CauseKind::force);
+}
+
+bool is_of_all_thrusters(const Explanation& explanation) {
+  return explanation.kind == CauseKind::all_thrusters;
 }
 
 bool matters(const Explanation& explanation, double size) {
@@ -108,6 +113,18 @@ class Ranker {
     });
   }
 
+  // All thrusters by one factor against the best single cause. While the others are idle, all
+  // thrusters explain as much as one.
+  void compare(Choice all, double dispersion, CauseRanking& ranking) const {
+    all.worth = worth(all, dispersion);
+    if (all.worth > ranking.best.worth + kDiagnosis.named_margin_nats) {
+      ranking.rival = std::exchange(ranking.best, all);
+    } else if (all.worth > ranking.rival.worth &&
+               list_[ranking.best.one].kind != CauseKind::thruster) {
+      ranking.rival = all;
+    }
+  }
+
  private:
   // Whether `test` holds of each cause of a choice and the place of its first size.
   template <typename Test>
@@ -149,7 +166,8 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   const Ranker ranker(comparison, explanations, alone, rows, least_dispersion);
   const auto singles = [&](auto visit) {
     for (std::size_t i = 0; i < explanations.size(); ++i) {
-      if (const Choice single = ranker.single(i); ranker.are_plausible(single)) {
+      if (const Choice single = ranker.single(i);
+          !is_of_all_thrusters(explanations[i]) && ranker.are_plausible(single)) {
         visit(single);
       }
     }
@@ -160,7 +178,8 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
     const bool nearly_all = ranking.explained > kDiagnosis.alone_explained;
     for (std::size_t i = 0; i < explanations.size(); ++i) {
       for (std::size_t j = i + 1; j < explanations.size(); ++j) {
-        if (ranker.overlap(i, j) || (nearly_all && (is_load(i) || is_load(j)))) {
+        if (ranker.overlap(i, j) || is_of_all_thrusters(explanations[j]) ||
+            (nearly_all && (is_load(i) || is_load(j)))) {
           continue;
         }
         if (const Choice pair = ranker.pair(i, j);
@@ -179,6 +198,9 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   const double whole =
       std::max(comparison.whole() - 0.5 * least_dispersion * static_cast<double>(unknowns), 1e-9);
   ranker.best_two(singles, least_dispersion, ranking.best, ranking.rival);
+  if (!explanations.empty() && is_of_all_thrusters(explanations.back())) {
+    ranker.compare(ranker.single(explanations.size() - 1), least_dispersion, ranking);
+  }
   ranking.dispersion = dispersion_of(ranking.best);
   ranking.explained = std::min(ranking.best.agreement.evidence / whole, 1.0);
   if (ranking.dispersion > kDiagnosis.pair_dispersion * least_dispersion) {

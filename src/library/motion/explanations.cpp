@@ -100,6 +100,9 @@ Explanations::Explanations(const MotionTerms& terms, std::vector<std::size_t> bo
       list_.push_back({kind, terms.velocities()[axis], {column(kind, axis)}});
     }
   }
+  if (terms.commands().size() > 1) {
+    list_.push_back({CauseKind::all_thrusters, 0, {column(CauseKind::all_thrusters, 0)}});
+  }
 }
 
 std::size_t Explanations::column(CauseKind kind, std::size_t place, std::size_t from) {
@@ -195,6 +198,11 @@ void Explanations::directions(const MotionTerms& terms, std::span<const double> 
       case CauseKind::thruster:
         thrust_direction(terms, thrusts, where, out);
         break;
+      case CauseKind::all_thrusters:
+        for (const std::size_t input : terms.commands()) {
+          thrust_direction(terms, thrusts, input, out);
+        }
+        break;
       case CauseKind::drag:
         drag_direction(terms, coefficients, where, out);
         break;
@@ -243,6 +251,7 @@ Cause Explanations::cause(std::size_t explanation, double s, double reach) const
   };
   switch (of.kind) {
     case CauseKind::thruster:
+    case CauseKind::all_thrusters:
       return told([](double size) { return 1.0 - size; });
     case CauseKind::load:
       return told([](double size) { return 1.0 / std::max(1.0 + size, 1e-3); });
@@ -255,7 +264,7 @@ Cause Explanations::cause(std::size_t explanation, double s, double reach) const
 }
 
 void visit_cause(Archive& archive, Cause& cause) {
-  archive.choice(cause.kind, CauseKind::thruster, CauseKind::frozen);
+  archive.choice(cause.kind, CauseKind::thruster, CauseKind::all_thrusters);
   archive.whole(cause.place, 0, kMostInputs - 1);
   for (double* const number : {&cause.size, &cause.lower, &cause.upper}) {
     archive.any_number(*number);

@@ -28,6 +28,14 @@ bool is_dead(const Cause& thruster) {
   return thruster.size < kDiagnosis.dead_share;
 }
 
+// The share of a thruster that gives `factor` times its thrust of before.
+Cause product_of(const Cause& before, const Cause& factor) {
+  const double half = std::hypot(0.5 * (factor.upper - factor.lower) * before.size,
+                                 0.5 * (before.upper - before.lower) * factor.size);
+  const double size = before.size * factor.size;
+  return {before.kind, before.place, size, size - half, size + half};
+}
+
 }  // namespace
 
 ThrustShares::ThrustShares(const MotionTerms& terms, std::size_t axes)
@@ -52,10 +60,7 @@ Cause ThrustShares::against_nominal(const Cause& cause, const CoefficientMonitor
     const double last = projected(cause.place, monitor) - 1.0;
     return {cause.kind, cause.place, last + cause.size, last + cause.lower, last + cause.upper};
   }
-  const double half = std::hypot(0.5 * (cause.upper - cause.lower) * before.size,
-                                 0.5 * (before.upper - before.lower) * cause.size);
-  const double size = before.size * cause.size;
-  return {cause.kind, cause.place, size, size - half, size + half};
+  return product_of(before, cause);
 }
 
 void ThrustShares::dead_thrust(const MotionTerms& terms, std::span<double> thrust) const {
@@ -77,6 +82,12 @@ void ThrustShares::dead_thrust(const MotionTerms& terms, std::span<double> thrus
 void ThrustShares::follow(std::span<const Cause> changed) {
   present_ = settled_;
   for (const Cause& cause : changed) {
+    if (cause.kind == CauseKind::all_thrusters) {
+      for (Cause& thruster : present_) {
+        thruster = product_of(thruster, cause);
+      }
+      continue;
+    }
     const auto thruster = std::ranges::find(present_, cause.place, &Cause::place);
     if (cause.kind == CauseKind::thruster && thruster != present_.end()) {
       *thruster = cause;

@@ -11,7 +11,7 @@ namespace kelpie {
 namespace {
 
 constexpr std::array<std::string_view, kCauseKinds> kKinds{
-    "thruster", "drag", "load", "force", "sensor_scale", "sensor_bias", "frozen"};
+    "thruster", "drag", "load", "force", "sensor_scale", "sensor_bias", "frozen", "all_thrusters"};
 constexpr std::array<std::string_view, kFindingStates> kStates{"looking", "named", "ambiguous",
                                                                "none"};
 
@@ -30,10 +30,11 @@ std::string sized(const Cause& cause) {
 
 // Of a thruster that had another share of its nominal thrust `before`; 1: all of it.
 std::string share_of_thrust(const Cause& cause, double before) {
+  const std::string whose = cause.kind == CauseKind::all_thrusters ? "their" : "its";
   const int digits = 100.0 * (cause.upper - cause.lower) < 2.0 ? 1 : 0;
   const auto percent = [&](double share) { return text_of(100.0 * share, digits); };
   const std::string interval = " (" + percent(cause.lower) + " to " + percent(cause.upper) + " %";
-  return before == 1.0 ? percent(cause.size) + " % of its thrust" + interval + ")"
+  return before == 1.0 ? percent(cause.size) + " % of " + whose + " thrust" + interval + ")"
                        : percent(cause.size) + " % of its nominal thrust" +
                              (cause.size > before ? " again" : "") + interval + "; before " +
                              text_of(100.0 * std::abs(before), 0) + " %)";
@@ -57,6 +58,8 @@ std::string drive_for(const Cause& cause, const DiagnosisNames& names) {
       return "off and brake, again and again";
     case CauseKind::force:
       return "slowly, or not at all";
+    case CauseKind::all_thrusters:
+      return "each thruster alone, off and on";
     default:
       return column + " fast and slowly, both ways";
   }
@@ -81,6 +84,7 @@ std::string_view state_name(FindingState state) {
 std::string cause_column(const Cause& cause, const DiagnosisNames& names) {
   switch (cause.kind) {
     case CauseKind::load:
+    case CauseKind::all_thrusters:
       return "";
     case CauseKind::drag:
     case CauseKind::force:
@@ -108,6 +112,8 @@ std::string cause_text(const Cause& cause, const DiagnosisNames& names) {
       return column + " reads " + sized(cause) + " too much";
     case CauseKind::frozen:
       return column + " is frozen at " + text_of(cause.size, 4, std::chars_format::general);
+    case CauseKind::all_thrusters:
+      return "all thrusters give " + share_of_thrust(cause, 1.0);
   }
   return "";
 }

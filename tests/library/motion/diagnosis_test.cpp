@@ -62,6 +62,14 @@ TEST(Diagnosis, NamesAWeakThruster) {
   expect_named({.thrust = {0.2, 1.0, 1.0}}, CauseKind::thruster, 3, 0.2);
 }
 
+TEST(Diagnosis, NamesASaggingBattery) {
+  expect_named({.thrust = {0.8, 0.8, 0.8}}, CauseKind::all_thrusters, 0, 0.8);
+  const Diagnosis diagnosis = after({.thrust = {0.7, 0.7, 0.7}}, 1);
+  for (const Cause& thruster : diagnosis.present()) {
+    EXPECT_NEAR(thruster.size, 0.7, 0.03) << thruster.place;
+  }
+}
+
 // A ship with a rudder behind its screw.
 class Ship {
  public:

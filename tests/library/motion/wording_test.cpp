@@ -32,6 +32,12 @@ TEST(Wording, AThrusterThatHadChangedIsToldAgainstItsNominalThrust) {
             "th2 gives 30 % of its nominal thrust (28 to 32 %; before 60 %)");
 }
 
+TEST(Wording, AllThrustersAreNamedWithoutAColumn) {
+  const Cause cause{CauseKind::all_thrusters, 0, 0.8, 0.78, 0.82};
+  EXPECT_EQ(cause_text(cause, kNames), "all thrusters give 80 % of their thrust (78 to 82 %)");
+  EXPECT_EQ(cause_column(cause, kNames), "");
+}
+
 TEST(Wording, NumbersHaveTheDigitsThatTheIntervalGives) {
   EXPECT_EQ(cause_text({CauseKind::sensor_bias, 0, 0.0512, 0.0493, 0.0531}, kNames),
             "u reads 0.0512 (0.0493 to 0.0531) too much");
