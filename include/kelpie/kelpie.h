@@ -231,9 +231,9 @@ kelpie_status kelpie_shared_predict_with_jacobian(const kelpie_shared* shared, c
                                                   double* jacobian, int64_t* snapshot);
 
 /** From now on every update also renews a block: the content of a file of `kelpie export --live`,
- *  mapped for writing, which the library beside the file reads (docs/howto/controller.md). A block
- * of 0 bytes ends the service. The memory has to outlive the model or the service. KELPIE_BAD_INPUT
- * on memory that is no block of this model. For the teaching thread. Allocates. */
+ *  mapped for writing, which the library beside the file reads (docs/howto/controller.md). A block of 0
+ *  bytes ends the service. The memory has to outlive the model or the service. KELPIE_BAD_INPUT on
+ *  memory that is no block of this model. For the teaching thread. Allocates. */
 kelpie_status kelpie_shared_serve(kelpie_shared* shared, void* block, size_t bytes);
 
 /* A model.json: a model that no longer learns (kelpie::TrainedModel) */

@@ -17,10 +17,6 @@ bool same_cause(const Explanation& a, const Explanation& b) {
   return a.kind == b.kind && (a.place == b.place || a.kind == CauseKind::force);
 }
 
-bool is_of_all_thrusters(const Explanation& explanation) {
-  return explanation.kind == CauseKind::all_thrusters;
-}
-
 bool matters(const Explanation& explanation, double size) {
   const bool is_share =
       explanation.kind != CauseKind::force && explanation.kind != CauseKind::sensor_bias;
@@ -164,10 +160,12 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
                          std::span<const Agreement> alone, double rows, double least_dispersion,
                          std::size_t unknowns) {
   const Ranker ranker(comparison, explanations, alone, rows, least_dispersion);
+  const auto all_thrusters =
+      std::ranges::find(explanations, CauseKind::all_thrusters, &Explanation::kind);
+  const auto others = static_cast<std::size_t>(all_thrusters - explanations.begin());
   const auto singles = [&](auto visit) {
-    for (std::size_t i = 0; i < explanations.size(); ++i) {
-      if (const Choice single = ranker.single(i);
-          !is_of_all_thrusters(explanations[i]) && ranker.are_plausible(single)) {
+    for (std::size_t i = 0; i < others; ++i) {
+      if (const Choice single = ranker.single(i); ranker.are_plausible(single)) {
         visit(single);
       }
     }
@@ -176,10 +174,9 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   const auto is_load = [&](std::size_t i) { return explanations[i].kind == CauseKind::load; };
   const auto pairs = [&](auto visit) {
     const bool nearly_all = ranking.explained > kDiagnosis.alone_explained;
-    for (std::size_t i = 0; i < explanations.size(); ++i) {
-      for (std::size_t j = i + 1; j < explanations.size(); ++j) {
-        if (ranker.overlap(i, j) || is_of_all_thrusters(explanations[j]) ||
-            (nearly_all && (is_load(i) || is_load(j)))) {
+    for (std::size_t i = 0; i < others; ++i) {
+      for (std::size_t j = i + 1; j < others; ++j) {
+        if (ranker.overlap(i, j) || (nearly_all && (is_load(i) || is_load(j)))) {
           continue;
         }
         if (const Choice pair = ranker.pair(i, j);
@@ -198,8 +195,8 @@ CauseRanking rank_causes(const Comparison& comparison, std::span<const Explanati
   const double whole =
       std::max(comparison.whole() - 0.5 * least_dispersion * static_cast<double>(unknowns), 1e-9);
   ranker.best_two(singles, least_dispersion, ranking.best, ranking.rival);
-  if (!explanations.empty() && is_of_all_thrusters(explanations.back())) {
-    ranker.compare(ranker.single(explanations.size() - 1), least_dispersion, ranking);
+  if (all_thrusters != explanations.end()) {
+    ranker.compare(ranker.single(others), least_dispersion, ranking);
   }
   ranking.dispersion = dispersion_of(ranking.best);
   ranking.explained = std::min(ranking.best.agreement.evidence / whole, 1.0);

@@ -40,9 +40,9 @@ struct Explanation {
   std::vector<std::size_t> columns;  ///< the size along the first column is the size of the cause
 };
 
-/// The explanations of every single cause: each thruster, all thrusters by one factor, the drag of
-/// each axis, a load, a force on each axis and on all axes, scale and bias of each velocity.
-/// Derived from the terms alone, so the same for any vehicle.
+/// The explanations of every single cause: each thruster, the drag of each axis, a load, a force on
+/// each axis and on all axes, scale and bias of each velocity; last, of two thrusters or more, all
+/// thrusters by one factor. Derived from the terms alone, so the same for any vehicle.
 class Explanations {
  public:
   /// `body_axes`: 0 to 5 for u, v, w, p, q, r, for each state; another number: unknown.

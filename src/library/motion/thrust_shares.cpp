@@ -82,15 +82,12 @@ void ThrustShares::dead_thrust(const MotionTerms& terms, std::span<double> thrus
 void ThrustShares::follow(std::span<const Cause> changed) {
   present_ = settled_;
   for (const Cause& cause : changed) {
-    if (cause.kind == CauseKind::all_thrusters) {
-      for (Cause& thruster : present_) {
+    for (Cause& thruster : present_) {
+      if (cause.kind == CauseKind::all_thrusters) {
         thruster = product_of(thruster, cause);
+      } else if (cause.kind == CauseKind::thruster && cause.place == thruster.place) {
+        thruster = cause;
       }
-      continue;
-    }
-    const auto thruster = std::ranges::find(present_, cause.place, &Cause::place);
-    if (cause.kind == CauseKind::thruster && thruster != present_.end()) {
-      *thruster = cause;
     }
   }
 }
