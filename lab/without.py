@@ -37,7 +37,7 @@ MECHANISMS = {
     "member physics": without_member(3),
     "member line": without_member(4),
     "shares by errors": ("learner/member_shares.cpp",
-                         "kOnline.shares.learning_rate * losses_.of[k]", "0.0 * losses_.of[k]"),
+                         "rate * losses_.of[k]", "0.0 * losses_.of[k]"),
     "calibration slope": ("learner/member_shares.cpp",
                           "slope_ = losses_.calibration.value();", "slope_ = 1.0;"),
     "limits of predictions": ("learner/committee.cpp", "return {.low = low,\n          .high = high,",

@@ -34,12 +34,13 @@ void MemberShares::learn_block() {
     block_[k] /= static_cast<double>(kBlock);
     all += shares_[k] * block_[k];
   }
-  losses_.all = kOnline.shares.keep * losses_.all + std::max(all, kOnline.shares.least_usual);
-  losses_.blocks = kOnline.shares.keep * losses_.blocks + 1.0;
+  ++losses_.blocks;
+  const double keep =
+      std::min(kOnline.shares.keep, 1.0 - 1.0 / static_cast<double>(losses_.blocks));
+  losses_.all = keep * losses_.all + std::max(all, kOnline.shares.least_usual);
   losses_.calibration = calibration_;
   for (std::size_t k = 0; k < members_; ++k) {
-    losses_.first[k] *= kOnline.shares.keep;
-    losses_.of[k] = kOnline.shares.keep * losses_.of[k] + block_[k];
+    losses_.of[k] = keep * losses_.of[k] + block_[k];
   }
 }
 
@@ -67,8 +68,11 @@ void MemberShares::start_block() {
 
 void MemberShares::update_weights() {
   slope_ = losses_.calibration.value();
+  const double before = std::pow(kOnline.shares.keep, losses_.blocks);
+  const double rate = kOnline.shares.learning_rate * std::sqrt(1.0 - before);
+  const double all = std::max(losses_.all, kOnline.shares.least_usual);
   for (std::size_t k = 0; k < members_; ++k) {
-    shares_[k] = losses_.first[k] - kOnline.shares.learning_rate * losses_.of[k] / losses_.usual();
+    shares_[k] = before * losses_.first[k] - rate * losses_.of[k] / all;
   }
   const double most = *std::ranges::max_element(std::span(shares_).first(members_));
   double total = 0.0;
@@ -88,7 +92,7 @@ void MemberShares::visit(Archive& archive) {
   archive.numbers(std::span(losses_.first).first(members_));
   archive.numbers(std::span(losses_.of).first(members_));
   archive.number(losses_.all);
-  archive.number(losses_.blocks);
+  archive.whole(losses_.blocks);
   archive.part("calibration at the block", losses_.calibration);
   archive.part("calibration", calibration_);
   if (archive.loading()) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "kelpie/core/archive.hpp"
@@ -13,16 +14,19 @@ namespace kelpie {
 /// Weights of a committee's members, from their errors on samples they have not learned yet, recent
 /// errors first (exponential weights: Cesa-Bianchi & Lugosi 2006).
 ///
-///     share_k ∝ exp(π_k − η L_k / e),  L_k ← λ L_k + mean loss of its block
+///     share_k ∝ exp(λⁿ π_k − η √(1 − λⁿ) L_k / A),  λₙ = min(λ, 1 − 1/n)
+///     L_k ← λₙ L_k + mean loss of block n,  A ← λₙ A + Σ share_k · mean loss of block n
 ///
 /// The loss of an error is |error|^1.5, the error at most 3: between absolute errors, which a calm
 /// vehicle's rare manoeuvres hardly change, and squares, which garbage changes much.
-/// π_k, the logarithm of the first share, fades with every block as L does: π_k ← λ π_k.
-/// e is the mean loss of the members, weighted by their shares: division by e makes the weights
-/// independent of the noise level. A block consists of kBlock samples, predicted by copies of the
-/// members made before the block. (One step ahead, a member with a memory of the last sample would
-/// have the largest weight.) The last member is the mean of the targets: the shares of the members
-/// are multiplied by the CalibrationSlope, and the mean receives the rest. Allocates nothing.
+/// Division by the committee's own losses A makes the weights independent of the noise level. The
+/// first losses are of members that have learned little: λₙ gives block m of the first blocks a
+/// weight in proportion to m, and the exponent grows as √n at first (Cesa-Bianchi & Lugosi 2006,
+/// section 2.3), while π_k, the logarithm of the first share, fades. A block consists of kBlock
+/// samples, predicted by copies of the members made before the block. (One step ahead, a member with
+/// a memory of the last sample would have the largest weight.) The last member is the mean of the
+/// targets: the shares of the members are multiplied by the CalibrationSlope, and the mean receives
+/// the rest. Allocates nothing.
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
@@ -55,14 +59,12 @@ class MemberShares {
  private:
   using Values = std::array<double, kMostMembers>;
 
-  /// Discounted sums.
   struct Losses {
     Values first{};                  ///< π_k
     Values of{};                     ///< L_k
-    double all = 0.0;                ///< of the committee
-    double blocks = 0.0;             ///< discounted number of blocks
+    double all = 0.0;                ///< A
+    std::int64_t blocks = 0;         ///< n
     CalibrationSlope calibration{};  ///< at the end of the block
-    double usual() const { return blocks > 0.0 ? all / blocks : 1.0; }  ///< e
   };
 
   void start_block();

@@ -96,7 +96,7 @@ struct OnlineTuning {
 
   /// MemberShares and CalibrationSlope; docs/method/committee.md as above.
   struct Shares {
-    double learning_rate = 0.1;  ///< η
+    double learning_rate = 5.0;  ///< η
     double keep = 0.98;          ///< λ per block: a memory of 50 blocks
     double least_share = 1e-9;
     double clip = 3.0;          ///< largest error of one sample [standard deviations]

@@ -125,37 +125,36 @@ class Regret {
   void add(std::span<const double> shares, std::span<const double> errors) {
     double all = 0.0;
     double square = 0.0;
+    const double keep = std::min(kKeep, 1.0 - 1.0 / ++blocks_);
     for (std::size_t k = 0; k < losses_.size(); ++k) {
       const double loss = std::pow(errors[k], 1.5);
       all += shares[k] * loss;
       square += shares[k] * loss * loss;
-      losses_[k] = kKeep * losses_[k] + loss;
+      losses_[k] = keep * losses_[k] + loss;
     }
-    all_ = kKeep * all_ + all;
-    blocks_ = kKeep * blocks_ + 1.0;
-    const double usual = all_ / blocks_;
-    const double usual_before = blocks_ > 1.0 ? usual_ : usual;
-    growth_ = kKeep * growth_ + std::max(usual_before - usual, 0.0) / kRate;
-    squares_ = kKeep * squares_ + kRate / usual_before * square / (2.0 * kKeep);
-    usual_ = usual;
+    all_ = keep * all_ + all;
+    const double width = all_ / (kRate * std::sqrt(1.0 - std::pow(kKeep, blocks_)));
+    const double before = blocks_ > 1.0 ? width_ : width;
+    growth_ = keep * growth_ + std::max(before - width, 0.0);
+    squares_ = keep * squares_ + square / (2.0 * before * (blocks_ > 1.0 ? keep : 1.0));
+    width_ = width;
   }
 
   double value() const { return all_ - *std::ranges::min_element(losses_); }
   double bound() const {
-    return std::log(static_cast<double>(losses_.size())) * (usual_ / kRate + growth_) + squares_;
+    return std::log(static_cast<double>(losses_.size())) * (width_ + growth_) + squares_;
   }
-  double usual() const { return usual_; }
-  double blocks() const { return blocks_; }
+  double all() const { return all_; }
 
  private:
   static constexpr double kKeep = 0.98;
-  static constexpr double kRate = 0.1;
+  static constexpr double kRate = 5.0;
   std::vector<double> losses_;
   double all_ = 0.0;
   double blocks_ = 0.0;
+  double width_ = 0.0;  ///< 1/η
   double growth_ = 0.0;
   double squares_ = 0.0;
-  double usual_ = 0.0;
 };
 
 // Who makes the members' errors knows the shares.
@@ -195,7 +194,7 @@ TEST(MemberShares, RegretAgainstTheBestMemberIsBoundedOnHostileStreams) {
       ASSERT_LE(regret.value(), regret.bound() + 1e-9) << "stream " << s << ", block " << block;
     }
     if (s < 3) {  // in the last stream the best member is so by luck
-      EXPECT_LE(regret.value(), 0.5 * regret.usual() * regret.blocks()) << "stream " << s;
+      EXPECT_LE(regret.value(), 0.5 * regret.all()) << "stream " << s;
     }
   }
 }
