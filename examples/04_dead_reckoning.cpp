@@ -4,10 +4,10 @@
 //
 // Prints:
 //     age   true u   reckoned   spread   [m/s]
-//    10 s    0.532      0.532    0.058
-//    20 s   -1.086     -1.089    0.054
-//    30 s   -0.263     -0.264    0.046
-//   way made good -4.88 m, reckoned -4.90 m: 0.02 m off
+//    10 s    0.532      0.532    0.065
+//    20 s   -1.086     -1.088    0.065
+//    30 s   -0.263     -0.263    0.054
+//   way made good -4.88 m, reckoned -4.89 m: 0.01 m off
 
 #include <array>
 #include <cmath>

@@ -56,6 +56,15 @@ TEST(MemberShares, BeliefFollowsWhoIsRightNow) {
   EXPECT_GT(shares.shares()[1], 0.9);
 }
 
+// In the first minute a member that has learned meanwhile is not held to what it said at first.
+TEST(MemberShares, AMemberThatHasLearnedIsBelievedSoon) {
+  MemberShares shares(kAlike);
+  score(shares, {1.0, 0.6, 0.6}, 60);
+  EXPECT_LT(shares.shares()[0], 0.3);
+  score(shares, {0.2, 0.6, 0.6}, 140);
+  EXPECT_GT(shares.shares()[0], 0.7);
+}
+
 // One absurd sample counts as three standard deviations, whatever it is.
 TEST(MemberShares, WhatIsNoNumberIsNoBetterThanTheWorst) {
   MemberShares shares(kAlike);
