@@ -339,10 +339,10 @@ bool may_be_pulses(const Table& table, std::size_t column) {
   const bool is_speed = std::ranges::any_of(words, [&](const std::string& word) {
     return begins_one_of(word, {"rpm", "rps", "rev", "speed", "omega", "engine"});
   });
-  const bool is_command =
-      names_thruster(table.names[column]) || std::ranges::any_of(words, [&](const auto& word) {
-        return begins_one_of(word, {"pwm", "chan", "rudder", "fin", "elevator", "steering"});
-      });
+  const bool is_command = names_thruster(table.names[column]) || names_fin(table.names[column]) ||
+                          std::ranges::any_of(words, [&](const std::string& word) {
+                            return begins_one_of(word, {"pwm", "chan", "steering"});
+                          });
   return is_command && !is_speed && (unit.empty() || unit == "us" || unit == "µs");
 }
 

@@ -173,6 +173,10 @@ constexpr std::array kVelocityNames = std::to_array<VelocityNames>({
     {"nav_speed", 0},
 });
 
+constexpr std::array kFinWords = std::to_array<std::string_view>(
+    {"rudder", "rudders", "fin", "fins", "elevator", "elevators", "plane", "planes", "sternplane",
+     "sternplanes", "bowplane", "bowplanes", "aileron", "ailerons", "flap", "flaps", "delta"});
+
 // Parts of a pose, with the words for each.
 struct PoseWords {
   std::string_view part;
@@ -302,6 +306,14 @@ std::vector<std::string> words_of(std::string_view name) {
     words.pop_back();
   }
   return words;
+}
+
+bool names_fin(std::string_view column) {
+  return std::ranges::any_of(words_of(column), [](const std::string& word) {
+    const std::size_t letters = word.find_last_not_of("0123456789") + 1;
+    return std::ranges::find(kFinWords, std::string_view(word).substr(0, letters)) !=
+           kFinWords.end();
+  });
 }
 
 std::optional<std::size_t> velocity_by_name(std::string_view name) {

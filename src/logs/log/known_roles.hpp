@@ -61,6 +61,10 @@ std::vector<std::string> expanded(std::string_view fields);
 /// gives thruster, left, cmd.
 std::vector<std::string> words_of(std::string_view name);
 
+/// Whether a column is a fin's, rudder's or other control surface's by a word of the name, numbered
+/// or not.
+bool names_fin(std::string_view column);
+
 /// A part of a pose by the last words of a name: "x" of px, pos_x and north; "z" of depth; "yaw" of
 /// psi and heading; roll, pitch, qw, qx, qy, qz. Empty: none.
 std::optional<std::string> pose_part_by_name(std::string_view name);

@@ -26,19 +26,6 @@ namespace {
 constexpr std::array<std::size_t, kPlanarAxes> kAxes{0, 1, 5};  // of velocity_axis()
 constexpr std::array<const char*, kPlanarAxes> kAxisNames{"surge", "sway", "yaw rate"};
 
-// Words of names, numbered or not.
-constexpr std::array kFinWords = std::to_array<std::string_view>(
-    {"rudder", "rudders", "fin", "fins", "elevator", "elevators", "plane", "planes", "sternplane",
-     "sternplanes", "bowplane", "bowplanes", "aileron", "ailerons", "flap", "flaps", "delta"});
-
-bool names_fin(const std::string& column) {
-  return std::ranges::any_of(log::words_of(column), [](const std::string& word) {
-    const std::size_t letters = word.find_last_not_of("0123456789") + 1;
-    return std::ranges::find(kFinWords, std::string_view(word).substr(0, letters)) !=
-           kFinWords.end();
-  });
-}
-
 std::vector<std::size_t> find_thrusters(const log::Dataset& data,
                                         const std::vector<std::size_t>& velocities,
                                         const std::vector<std::string>& wanted) {
@@ -54,7 +41,7 @@ std::vector<std::size_t> find_thrusters(const log::Dataset& data,
     if (std::ranges::find(velocities, i) != velocities.end() || velocity_axis(name)) {
       continue;
     }
-    if (names_fin(name)) {
+    if (log::names_fin(name)) {
       throw InputError({.file = data.source, .line = 0, .field = name},
                        "is a fin by its name, and the forces of fins are not in the equation "
                        "(docs/howto/identify.md, \"Where it fails\"); say by --thrusters which "
@@ -251,7 +238,7 @@ void HeldOutFit::score() {
 
 std::vector<std::string> fins_of(const log::Dataset& data) {
   std::vector<std::string> fins;
-  std::ranges::copy_if(data.input_names, std::back_inserter(fins), names_fin);
+  std::ranges::copy_if(data.input_names, std::back_inserter(fins), log::names_fin);
   return fins;
 }
 

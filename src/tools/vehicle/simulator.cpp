@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vehicle/simulator.hpp"
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <sstream>
 
 #include "kelpie/core/error.hpp"
-#include "vehicle/frames.hpp"
 
 namespace kelpie::vehicle {
 namespace {
@@ -93,36 +90,6 @@ void Simulator::advance_in_plane(const Eigen::Vector3d& lateral_rps) {
 
 Vector6 Simulator::acceleration() const {
   return dynamics_.acceleration(state_.attitude, state_.velocity, state_.rotors_rps);
-}
-
-std::vector<Eigen::Vector3d> free_run(const VehicleParameters& vehicle,
-                                      const Eigen::Vector3d& start,
-                                      std::span<const Eigen::Vector3d> rotors_rps,
-                                      double period_s) {
-  const std::int64_t ticks = ticks_in(period_s);
-  if (ticks == 0) {
-    throw InputError(fmt::format("rows of a log must be a whole number of {} s apart, not {} s",
-                                 kTickS, period_s));
-  }
-  VehicleParameters without_lag = vehicle;
-  without_lag.rotor_lag_s = 0.0;
-  State state;
-  state.velocity = from_planar_flu(start);
-  Simulator simulator(without_lag, make_plant(vehicle, Configuration{}), Eigen::Vector3d::Zero(),
-                      state);
-
-  std::vector<Eigen::Vector3d> velocities;
-  for (std::size_t row = 0; row < rotors_rps.size(); ++row) {
-    velocities.emplace_back(planar_flu(simulator.state().velocity));
-    if (row + 1 == rotors_rps.size()) {
-      break;
-    }
-    for (std::int64_t tick = 0; tick < ticks; ++tick) {
-      const double share = (static_cast<double>(tick) + 0.5) / static_cast<double>(ticks);
-      simulator.advance_in_plane((1.0 - share) * rotors_rps[row] + share * rotors_rps[row + 1]);
-    }
-  }
-  return velocities;
 }
 
 }  // namespace kelpie::vehicle

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "vehicle/battery.hpp"
@@ -64,13 +63,5 @@ class Simulator {
   std::vector<RotorSpeeds> waiting_;  ///< commands under way, a ring; empty: no delay
   std::int64_t ticks_ = 0;
 };
-
-/// Free run on a log: surge, sway and yaw rate (FLU) at every row, from a level start with the
-/// velocities `start` (FLU) and with the measured speeds of the lateral rotors, linear between
-/// rows. No rotor lag: measured speeds include the lag. Throws InputError unless `period_s` is a
-/// whole number of ticks.
-std::vector<Eigen::Vector3d> free_run(const VehicleParameters& vehicle,
-                                      const Eigen::Vector3d& start,
-                                      std::span<const Eigen::Vector3d> rotors_rps, double period_s);
 
 }  // namespace kelpie::vehicle
