@@ -44,10 +44,6 @@ SparseRegressionSettings memory_settings(std::size_t inputs, std::size_t terms,
           .gamma = kOnline.members.memory_gamma * input_width(inputs)};
 }
 
-SparseRegressionSettings physics_settings(std::size_t terms) {
-  return {.terms = terms, .term_prior = kOnline.members.physics_term_prior};
-}
-
 std::vector<double> first_shares(bool alone) {
   const std::span<const double> relative(kOnline.members.first_shares);
   std::vector<double> shares(relative.begin(), alone ? relative.begin() + 1 : relative.end());
@@ -81,7 +77,7 @@ Committee::Fits::Fits(std::size_t inputs, std::size_t terms, std::size_t line_te
                       const OnlineSvrSettings& learner)
     : precise(inputs, terms, precise_settings(inputs, terms, learner)),
       memory(inputs, terms, memory_settings(inputs, terms, learner)),
-      physics(inputs, terms, physics_settings(terms)),
+      physics(inputs, terms, {.terms = terms}),
       line(inputs, terms, {.terms = line_terms}),
       mean(inputs, terms, {}) {}
 
@@ -111,7 +107,7 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
            SvrFunction::bytes(inputs, terms, places);
     for (const SparseRegressionSettings& fit :
          {precise_settings(inputs, terms, settings), memory_settings(inputs, terms, settings),
-          physics_settings(terms), SparseRegressionSettings{.terms = plan.line},
+          SparseRegressionSettings{.terms = terms}, SparseRegressionSettings{.terms = plan.line},
           SparseRegressionSettings{}}) {
       sum += SparseRegression::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
              SvrFunction::bytes(inputs, terms, fit.most_centres);

@@ -16,6 +16,10 @@ std::size_t width(const SparseRegressionSettings& settings) {
   return settings.terms + 1 + settings.most_centres;
 }
 
+bool is_linear(const SparseRegressionSettings& settings) {
+  return settings.most_centres == 0;
+}
+
 }  // namespace
 
 SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
@@ -23,7 +27,8 @@ SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
     : settings_(settings),
       centres_(inputs, settings.most_centres),
       newton_(settings.most_centres * settings.most_centres),
-      fit_(width(settings), settings.term_prior),
+      fit_(width(settings),
+           is_linear(settings) ? kOnline.members.linear_least_prior : settings.term_prior),
       features_(fit_.terms()),
       kappa_(settings.most_centres),
       beta_(settings.most_centres),
@@ -31,6 +36,9 @@ SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
       expected_(fit_.terms()),
       information_(fit_.terms(), settings.ridge),
       model_(MixedKernel(settings.gamma, {}, inputs, terms), settings.most_centres) {
+  if (is_linear(settings)) {
+    shrunk_ = fit_;
+  }
   clear();
 }
 
@@ -38,7 +46,9 @@ std::size_t SparseRegression::bytes(std::size_t inputs, std::size_t terms,
                                     const SparseRegressionSettings& settings) {
   const std::size_t m = width(settings);
   const std::size_t centres = settings.most_centres;
-  return (m * (m + 1) + 9 * m + centres * centres + 2 * centres + terms) * sizeof(double) +
+  const std::size_t fits = is_linear(settings) ? 2 : 1;
+  return (fits * (m * (m + 1) + 5 * m) + 4 * m + centres * centres + 2 * centres + terms) *
+             sizeof(double) +
          SampleStore::bytes(inputs, centres) + SvrFunction::bytes(inputs, terms, centres);
 }
 
@@ -49,7 +59,7 @@ void SparseRegression::update(std::span<const double> z, double y) {
 
 void SparseRegression::learn(std::span<const double> z, double y, bool successive) {
   compute_features(z, settings_.new_place);
-  const double error = y - as_vector(fit_.theta()).dot(as_vector(features_));
+  const double error = y - as_vector(theta()).dot(as_vector(features_));
   const double root = std::sqrt(weight_of(error));
   if (samples_++ >= kOnline.members.ignored_first) {
     usual_error_.add(error);
@@ -76,6 +86,10 @@ void SparseRegression::shift(std::span<const double> step) {
   }
   features_[first_centre() - 1] += step.back();
   fit_.set_theta(features_);
+  if (shrunk_) {
+    add_scaled(1.0, step.first(settings_.terms), std::span(expected_).first(settings_.terms));
+    expected_.back() += step.back();
+  }
   publish();
 }
 
@@ -91,7 +105,7 @@ void SparseRegression::doubt_terms(double samples) {
 
 void SparseRegression::rescale(std::span<const double> factors, double gain, double offset) {
   correlation_.rescale(gain);
-  if (settings_.most_centres > 0) {
+  if (!is_linear(settings_)) {
     clear();
     return;
   }
@@ -105,6 +119,10 @@ void SparseRegression::rescale(std::span<const double> factors, double gain, dou
   std::ranges::copy(fit_.theta(), features_.begin());
   features_[first_centre() - 1] += offset;
   fit_.set_theta(features_);
+  for (std::size_t k = 0; k < settings_.terms; ++k) {
+    expected_[k] *= gain / factors[k];
+  }
+  expected_.back() = gain * expected_.back() + offset;
   publish();
 }
 
@@ -161,6 +179,9 @@ void SparseRegression::imitate(const SvrFunction& function, const SampleStore& p
   if (alike && centres_.size() == known) {
     set_coefficients(function);
   }
+  if (shrunk_) {
+    std::ranges::copy(fit_.theta(), expected_.begin());
+  }
   publish();
 }
 
@@ -201,7 +222,7 @@ void SparseRegression::compute_features(std::span<const double> z, double new_pl
   std::ranges::fill(features_, 0.0);
   std::ranges::copy(z.subspan(centres_.dimension(), settings_.terms), features_.begin());
   features_[first_centre() - 1] = 1.0;
-  if (settings_.most_centres == 0) {
+  if (is_linear(settings_)) {
     return;
   }
   const std::span<const double> place = z.first(centres_.dimension());
@@ -232,9 +253,18 @@ double SparseRegression::weight_of(double error) const {
   return share * share;
 }
 
+double SparseRegression::prior_samples() const {
+  const double noise = usual_error_.value();
+  return std::min(1.0, noise * noise * correlation_.rows_per_sample());
+}
+
 // The function of θ in its usual basis: β = L⁻ᵀ θ_v.
 void SparseRegression::publish() {
-  const std::span<const double> theta = fit_.theta();
+  if (shrunk_) {
+    *shrunk_ = fit_;
+    shrunk_->hold(expected_, prior_samples());
+  }
+  const std::span<const double> theta = this->theta();
   std::copy_n(theta.begin(), settings_.terms, term_weights_.begin());
   const std::span<double> beta = std::span(beta_).first(centres_.size());
   std::copy_n(theta.data() + first_centre(), beta.size(), beta.begin());

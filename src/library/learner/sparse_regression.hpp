@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct SparseRegressionSettings {
   double gamma = 0.2;            ///< γ of the kernel (eq. 6)
   double new_place = 0.1;        ///< fraction of a kernel function's squared norm for a new centre
   double ridge = 1.0;            ///< noise variance relative to the kernel part's
-  double term_prior = 1.0;       ///< prior of a term without effect [samples]
+  double term_prior = 1.0;       ///< with kernels: prior of a term without effect [samples]
 };
 
 /// Robust sparse kernel least squares over every sample since the start, without a buffer:
@@ -35,6 +36,11 @@ struct SparseRegressionSettings {
 /// v = L⁻¹κ with the centres' kernel matrix LLᵀ: the basis function of a new centre is 0 at the
 /// earlier centres, and samples learned before stay valid. The prior is the |f|² of kernel ridge
 /// regression in the Hilbert space.
+///
+/// The prior of a linear regression says that a term has no effect, with the weight of σ²τ rows, at
+/// most one: weights of scaled terms vary by about 1, σ is the usual error, and τ rows count as an
+/// independent sample. With little noise the samples of a first minute tell terms apart that go
+/// together.
 ///
 /// A sample with an error of e > 2.5 usual errors has the weight (2.5/e)², which makes the fit
 /// robust to one-sided outliers as well. Allocates in the constructor only.
@@ -116,6 +122,9 @@ class SparseRegression {
   void add_centre(std::span<const double> z, double left);
   void forget_samples();
   double weight_of(double error) const;
+  double prior_samples() const;
+  /// θ, as of the last publish().
+  std::span<const double> theta() const { return shrunk_ ? shrunk_->theta() : fit_.theta(); }
   void set_coefficients(const SvrFunction& function);
   std::size_t first_centre() const { return settings_.terms + 1; }
   std::span<double> newton() { return {features_.data() + first_centre(), centres_.size()}; }
@@ -125,11 +134,12 @@ class SparseRegression {
 
   SparseRegressionSettings settings_;
   SampleStore centres_;
-  std::vector<double> newton_;    ///< L, row-major
-  TriangularFit fit_;             ///< of φ, 1, v
-  std::vector<double> features_;  ///< φ, 1, v of the present sample
-  std::vector<double> kappa_;     ///< scratch: a value per centre
-  std::vector<double> beta_;      ///< a value per centre
+  std::vector<double> newton_;           ///< L, row-major
+  TriangularFit fit_;                    ///< of φ, 1, v
+  std::optional<TriangularFit> shrunk_;  ///< of a linear regression: fit_ with the prior
+  std::vector<double> features_;         ///< φ, 1, v of the present sample
+  std::vector<double> kappa_;            ///< scratch: a value per centre
+  std::vector<double> beta_;             ///< a value per centre
   std::vector<double> term_weights_;
   std::vector<double> expected_;     ///< θ before the first sample
   std::vector<double> information_;  ///< of `expected_`: the prior

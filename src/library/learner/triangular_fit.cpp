@@ -77,6 +77,16 @@ void TriangularFit::hold(std::size_t term, double rows) {
   solve();
 }
 
+void TriangularFit::hold(std::span<const double> expected, double rows) {
+  for (std::size_t k = 0; k < terms(); ++k) {
+    std::ranges::fill(row_, 0.0);
+    row_[k] = std::sqrt(rows * moment_[k]);
+    row_.back() = row_[k] * expected[k];
+    absorb();
+  }
+  solve();
+}
+
 void TriangularFit::set_theta(std::span<const double> theta) {
   const auto m = static_cast<Eigen::Index>(terms());
   auto factor = as_factor(factor_, terms());

@@ -51,6 +51,10 @@ class TriangularFit {
   /// O(m²).
   void hold(std::size_t term, double rows);
 
+  /// Adds θ = `expected` with the weight of `rows` rows of every term's usual size. Requires one
+  /// target, a value per term, rows >= 0. Cost O(m³).
+  void hold(std::span<const double> expected, double rows);
+
   /// Sets θ of all targets; the information about the coefficients does not change. Requires a
   /// value per term, 0 for a term without excitation. Cost O(m²).
   void set_theta(std::span<const double> theta);

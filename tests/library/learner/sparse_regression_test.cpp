@@ -131,6 +131,37 @@ TEST(SparseRegression, IsRidgeRegressionOverAllSamplesWhereNoneIsOff) {
   EXPECT_LT((slope - ridge * penalty).norm(), 0.02 * size / std::sqrt(double(count)));
 }
 
+// Mean square error of the weights of three terms of size 1 that go together (correlation 0.99),
+// after 100 samples.
+double error_of_weights(double noise) {
+  double sum = 0.0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    RandomStream random(seed, "collinear");
+    const Eigen::Vector3d weights(random.normal(), random.normal(), random.normal());
+    SparseRegression line(1, 3, {.terms = 3});
+    for (int i = 0; i < 100; ++i) {
+      const double common = random.normal();
+      std::vector<double> z{0.0};
+      double y = noise * random.normal();
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        z.push_back(0.995 * common + 0.1 * random.normal());
+        y += weights[k] * z.back();
+      }
+      line.update(z, y);
+    }
+    const Eigen::Map<const Eigen::Vector3d> learned(line.model().term_weights().data());
+    sum += (learned - weights).squaredNorm() / 3.0;
+  }
+  return sum / 40.0;
+}
+
+// A prior of one sample, whatever the noise, has an error of 0.17 with little noise; least squares
+// have 0.67 with much.
+TEST(SparseRegression, TermsThatGoTogetherAreTheSamplesWithLittleNoiseAndThePriorsWithMuch) {
+  EXPECT_LT(error_of_weights(0.01), 1e-3);
+  EXPECT_LT(error_of_weights(1.0), 0.45);
+}
+
 TEST(SparseRegression, OutliersCountLittle) {
   RandomStream random(4, "memory");
   SparseRegression clean(2, 1, kWithKernel);

@@ -117,6 +117,23 @@ TEST(TriangularFit, HoldsATermAtZeroAsManyRowsWould) {
   }
 }
 
+TEST(TriangularFit, HoldsAllTermsWhereExpectedAsManyRowsWould) {
+  const Rows all = rows(300);
+  const Eigen::Vector3d expected(1e-4, 200.0, -1.0);
+  TriangularFit fit(3, 1e-9);
+  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
+    fit.add(phi_of(all, i), all.y[i]);
+  }
+  fit.hold(std::span<const double>(expected.data(), 3), 60.0);
+  const Eigen::MatrixXd information = all.phi.transpose() * all.phi;
+  const Eigen::MatrixXd held = 0.2 * information.diagonal().asDiagonal();
+  const Eigen::VectorXd theta =
+      (information + held).ldlt().solve(all.phi.transpose() * all.y + held * expected);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(fit.theta()[static_cast<std::size_t>(k)] / theta[k], 1.0, 1e-6);
+  }
+}
+
 TEST(TriangularFit, KnowsNothingOfATermThatNeverMoved) {
   TriangularFit fit(2, 0.1);
   for (int i = 0; i < 20; ++i) {
