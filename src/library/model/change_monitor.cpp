@@ -121,7 +121,7 @@ void ChangeMonitor::predict(std::span<const double> y) {
     find_effects(fit_.theta(a), a);
     error_[a] = y[a] - effects_.value;
     const std::span<const double> effects(effects_.of_cause);
-    effect_[a] = std::hypot(as_vector(effects.first(commands_)).norm(), effects[causes()]);
+    effect_[a] = std::hypot(as_vector(effects.first(commands_)).norm(), effects[all_drag()]);
     usual_error_[a] = scatter_[a].value() * scatter_[a].ratio(effect_[a]);
   }
 }
@@ -243,9 +243,9 @@ void ChangeMonitor::find_effects(std::span<const double> theta, std::size_t axis
     drag += term_drag_[k] == axis ? part : 0.0;
     commanded += term_commands_[k].empty() ? 0.0 : part;
   }
-  effect[commands_ + axis] = effect[causes()] = drag;
-  effect[commands_ + axes() + axis] = effect[causes() + 1] = value;
-  effect[causes() + 2] = commanded;
+  effect[commands_ + axis] = effect[all_drag()] = drag;
+  effect[commands_ + axes() + axis] = effect[all_inertia()] = value;
+  effect[all_commands()] = commanded;
 }
 
 // The start is compared with the fit, or with the vehicle before the change.
@@ -351,7 +351,7 @@ ChangeMonitor::Event ChangeMonitor::disbelieve_cause() {
 // One cause that explains nearly all that all causes together explain: errors of the equation of
 // motion favour many small changes, and a thruster that fails is more usual.
 std::optional<std::size_t> ChangeMonitor::clear_command(const ChangeStart& start) const {
-  const auto others = std::span(start.lone).first(causes() + 2);  // while idle, all are as one
+  const auto others = std::span(start.lone).first(all_commands());  // while idle, all are as one
   const auto lone = std::ranges::max_element(others, {}, &LoneCause::likelihood);
   const auto command = static_cast<std::size_t>(lone - others.begin());
   const bool clear = command < commands_ && scales_[command] &&
@@ -365,7 +365,7 @@ bool ChangeMonitor::has_likely_cause(const ChangeStart& start) const {
   const auto lone = std::ranges::max_element(start.lone, {}, &LoneCause::likelihood);
   const auto cause = static_cast<std::size_t>(lone - start.lone.begin());
   const bool is_inertia =
-      (cause >= commands_ + axes() && cause < causes()) || cause == causes() + 1;
+      (cause >= commands_ + axes() && cause < causes()) || cause == all_inertia();
   return !is_inertia && is_possible_factor(1.0 + lone->size) &&
          lone->likelihood >= kChange.main_share * start.likelihood;
 }

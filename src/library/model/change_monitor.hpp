@@ -112,7 +112,11 @@ class ChangeMonitor {
 
   std::size_t columns() const { return fit_.terms(); }
   std::size_t axes() const { return fit_.targets(); }
+  /// Commands, the drag of every axis, the inertia of every axis; then the causes of many.
   std::size_t causes() const { return commands_ + 2 * axes(); }
+  std::size_t all_drag() const { return causes(); }
+  std::size_t all_inertia() const { return causes() + 1; }
+  std::size_t all_commands() const { return causes() + 2; }
   bool known() const;
   double threshold() const;
   double row_weight() const;

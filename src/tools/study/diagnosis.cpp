@@ -74,7 +74,10 @@ ThrusterSinceStart since_the_start(const Cause& present, std::span<const Cause> 
   }
   for (const Finding& finding : findings) {
     for (const Cause& cause : std::span(finding.causes).first(finding.count)) {
-      if (finding.settled && cause.kind == CauseKind::thruster && cause.place == present.place) {
+      const bool is_of_thruster =
+          cause.kind == CauseKind::all_thrusters ||
+          (cause.kind == CauseKind::thruster && cause.place == present.place);
+      if (finding.settled && is_of_thruster) {
         thruster.changed_s.push_back(finding.since_s);
       }
     }
