@@ -11,7 +11,8 @@ namespace kelpie::diagnosis_test {
 namespace {
 
 Finding settled(double since_s, const Cause& cause) {
-  Finding finding{.since_s = since_s};
+  Finding finding;
+  finding.since_s = since_s;
   finding.state = FindingState::named;
   finding.settled = true;
   finding.count = 1;
