@@ -100,6 +100,7 @@ void SparseRegression::doubt_terms(double samples) {
     std::ranges::fill(std::span(features_).first(first_centre()), std::sqrt(rows / known_rows_));
     fit_.forget(features_);
     known_rows_ = rows;
+    publish();
   }
 }
 
@@ -123,6 +124,11 @@ void SparseRegression::rescale(std::span<const double> factors, double gain, dou
     expected_[k] *= gain / factors[k];
   }
   expected_.back() = gain * expected_.back() + offset;
+  publish();
+}
+
+void SparseRegression::forget_usual_error() {
+  usual_error_.clear();
   publish();
 }
 

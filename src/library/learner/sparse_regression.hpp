@@ -89,7 +89,7 @@ class SparseRegression {
   void rescale(std::span<const double> factors, double gain, double offset);
 
   /// Errors so far say nothing of the next: no sample is an outlier until the usual error is known.
-  void forget_usual_error() { usual_error_.clear(); }
+  void forget_usual_error();
 
   void clear();  ///< Forgets everything but τ. Allocates nothing.
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/core/archive.hpp"
 #include "kelpie/core/random.hpp"
 
 namespace kelpie::sparse_regression_test {
@@ -242,6 +243,26 @@ TEST(SparseRegression, DoubtedTwiceItKnowsTermsAsWellAsDoubtedOnce) {
   learn(100);
   line.doubt_terms(300.0);
   EXPECT_NEAR(line.term_error(0), once, 0.15 * once);
+}
+
+// A linear regression's prior depends on more than its rows.
+TEST(SparseRegression, SavedAfterADoubtItSaysTheSame) {
+  RandomStream random(17, "memory");
+  SparseRegression line(2, 1, {.terms = 1});
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<double> z = sample(random);
+    line.update(z, truth(z) + 0.2 * random.normal());
+  }
+  line.doubt_terms(2.0);
+  line.forget_usual_error();
+  Archive saved;
+  line.visit(saved);
+  SparseRegression loaded(2, 1, {.terms = 1});
+  Archive archive(saved.bytes());
+  loaded.visit(archive);
+  archive.finish();
+  const std::vector<double> z = sample(random);
+  EXPECT_EQ(loaded.model()(z), line.model()(z));
 }
 
 // Errors of rows that go together go together in any scale.
