@@ -37,7 +37,9 @@ void MemberShares::learn_block() {
   ++losses_.blocks;
   const double keep =
       std::min(kOnline.shares.keep, 1.0 - 1.0 / static_cast<double>(losses_.blocks));
-  losses_.all = keep * losses_.all + std::max(all, kOnline.shares.least_usual);
+  const double loss = std::max(all, kOnline.shares.least_usual);
+  losses_.all = keep * losses_.all + loss;
+  losses_.squares = keep * keep * losses_.squares + loss * loss;
   losses_.calibration = calibration_;
   for (std::size_t k = 0; k < members_; ++k) {
     losses_.of[k] = keep * losses_.of[k] + block_[k];
@@ -69,8 +71,11 @@ void MemberShares::start_block() {
 void MemberShares::update_weights() {
   slope_ = losses_.calibration.value();
   const double before = std::pow(kOnline.shares.keep, losses_.blocks);
-  const double rate = kOnline.shares.learning_rate * std::sqrt(1.0 - before);
-  const double all = std::max(losses_.all, kOnline.shares.least_usual);
+  const double least = kOnline.shares.least_usual;
+  const double all = std::max(losses_.all, least);
+  const double blocks = all * all / std::max(losses_.squares, least * least);
+  const double known = std::min(1.0 - before, 4.0 / 3.0 * (1.0 - kOnline.shares.keep) * blocks);
+  const double rate = kOnline.shares.learning_rate * std::sqrt(known);
   for (std::size_t k = 0; k < members_; ++k) {
     shares_[k] = before * losses_.first[k] - rate * losses_.of[k] / all;
   }
@@ -92,6 +97,7 @@ void MemberShares::visit(Archive& archive) {
   archive.numbers(std::span(losses_.first).first(members_));
   archive.numbers(std::span(losses_.of).first(members_));
   archive.number(losses_.all);
+  archive.number(losses_.squares);
   archive.whole(losses_.blocks);
   archive.part("calibration at the block", losses_.calibration);
   archive.part("calibration", calibration_);

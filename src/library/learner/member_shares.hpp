@@ -14,19 +14,22 @@ namespace kelpie {
 /// Weights of a committee's members, from their errors on samples they have not learned yet, recent
 /// errors first (exponential weights: Cesa-Bianchi & Lugosi 2006).
 ///
-///     share_k ∝ exp(λⁿ π_k − η √(1 − λⁿ) L_k / A),  λₙ = min(λ, 1 − 1/n)
-///     L_k ← λₙ L_k + mean loss of block n,  A ← λₙ A + Σ share_k · mean loss of block n
+///     share_k ∝ exp(λⁿ π_k − η √s L_k / A),  s = min(1 − λⁿ, 4/3 (1 − λ) A²/Q)
+///     L_k ← λₙ L_k + mean loss of block n,  λₙ = min(λ, 1 − 1/n)
+///     A ← λₙ A + Σ share_k · mean loss of block n,  Q ← λₙ² Q + (Σ share_k · mean loss)²
 ///
 /// The loss of an error is |error|^1.5, the error at most 3: between absolute errors, which a calm
 /// vehicle's rare manoeuvres hardly change, and squares, which garbage changes much.
 /// Division by the committee's own losses A makes the weights independent of the noise level. The
 /// first losses are of members that have learned little: λₙ gives block m of the first blocks a
 /// weight in proportion to m, and the exponent grows as √n at first (Cesa-Bianchi & Lugosi 2006,
-/// section 2.3), while π_k, the logarithm of the first share, fades. A block consists of kBlock
-/// samples, predicted by copies of the members made before the block. (One step ahead, a member with
-/// a memory of the last sample would have the largest weight.) The last member is the mean of the
-/// targets: the shares of the members are multiplied by the CalibrationSlope, and the mean receives
-/// the rest. Allocates nothing.
+/// section 2.3), while π_k, the logarithm of the first share, fades. A²/Q is the effective number
+/// of blocks (Kish 1965), 3n/4 for n blocks of equal losses: after a change of an accurate model a
+/// single block outweighs all others, and tells little of the members. A block consists of kBlock
+/// samples, predicted by copies of the members made before the block. (One step ahead, a member
+/// with a memory of the last sample would have the largest weight.) The last member is the mean of
+/// the targets: the shares of the members are multiplied by the CalibrationSlope, and the mean
+/// receives the rest. Allocates nothing.
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
@@ -63,6 +66,7 @@ class MemberShares {
     Values first{};                  ///< π_k
     Values of{};                     ///< L_k
     double all = 0.0;                ///< A
+    double squares = 0.0;            ///< Q
     std::int64_t blocks = 0;         ///< n
     CalibrationSlope calibration{};  ///< at the end of the block
   };

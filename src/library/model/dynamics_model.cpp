@@ -28,7 +28,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "32";  // of the archive of all classes together
+constexpr const char* kStateVersion = "33";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {

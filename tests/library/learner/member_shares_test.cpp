@@ -56,6 +56,18 @@ TEST(MemberShares, BeliefFollowsWhoIsRightNow) {
   EXPECT_GT(shares.shares()[1], 0.9);
 }
 
+// After hours of an accurate model its usual loss is tiny: a single block of a changed vehicle, in
+// which another member happens to be less wrong, is not taken for all there is to know.
+TEST(MemberShares, OneBlockAfterAChangeDecidesLittle) {
+  MemberShares shares(kAlike);
+  score(shares, {0.001, 0.02, 1.0}, 5000);
+  EXPECT_GT(shares.shares()[0], 0.99);
+  score(shares, {1.0, 0.7, 1.0}, 20);
+  EXPECT_LT(shares.shares()[1], 0.65);
+  score(shares, {1.0, 0.7, 1.0}, 400);
+  EXPECT_GT(shares.shares()[1], 0.65);
+}
+
 // In the first minute a member that has learned meanwhile is not held to what it said at first.
 TEST(MemberShares, AMemberThatHasLearnedIsBelievedSoon) {
   MemberShares shares(kAlike);
@@ -142,7 +154,10 @@ class Regret {
       losses_[k] = keep * losses_[k] + loss;
     }
     all_ = keep * all_ + all;
-    const double width = all_ / (kRate * std::sqrt(1.0 - std::pow(kKeep, blocks_)));
+    square_ = keep * keep * square_ + all * all;
+    const double known =
+        std::min(1.0 - std::pow(kKeep, blocks_), 4.0 / 3.0 * (1.0 - kKeep) * all_ * all_ / square_);
+    const double width = all_ / (kRate * std::sqrt(known));
     const double before = blocks_ > 1.0 ? width_ : width;
     growth_ = keep * growth_ + std::max(before - width, 0.0);
     squares_ = keep * squares_ + square / (2.0 * before * (blocks_ > 1.0 ? keep : 1.0));
@@ -160,6 +175,7 @@ class Regret {
   static constexpr double kRate = 5.0;
   std::vector<double> losses_;
   double all_ = 0.0;
+  double square_ = 0.0;  ///< of the shares' losses of a block
   double blocks_ = 0.0;
   double width_ = 0.0;  ///< 1/η
   double growth_ = 0.0;
