@@ -44,7 +44,7 @@ MECHANISMS = {
                               "return {.low = std::min(low, -1e9), .high = std::max(high, 1e9),"),
     "ranges of terms": ("learner/tuning.hpp", "term_margin = 0.5;", "term_margin = 1e9;"),
     "prior in units of noise": ("learner/sparse_regression.cpp",
-                                "std::min(1.0, noise", "std::max(1.0, 0.0 * noise"),
+                                "std::min(settings_.term_prior, noise", "std::max(1.0, 0.0 * noise"),
     "caution": ("learner/committee.cpp", "outgrown ? 0.0 : kOnline.members.caution",
                 "outgrown ? 0.0 : 0.0"),
     "fine part of the kernel": with_setting(".fine = 0.0"),

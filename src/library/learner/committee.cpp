@@ -44,6 +44,14 @@ SparseRegressionSettings memory_settings(std::size_t inputs, std::size_t terms,
           .gamma = kOnline.members.memory_gamma * input_width(inputs)};
 }
 
+SparseRegressionSettings physics_settings(std::size_t terms) {
+  return {.terms = terms, .term_prior = kOnline.members.physics_term_prior};
+}
+
+SparseRegressionSettings line_settings(std::size_t terms) {
+  return {.terms = terms, .prior_by_noise = true};
+}
+
 std::vector<double> first_shares(bool alone) {
   const std::span<const double> relative(kOnline.members.first_shares);
   std::vector<double> shares(relative.begin(), alone ? relative.begin() + 1 : relative.end());
@@ -77,8 +85,8 @@ Committee::Fits::Fits(std::size_t inputs, std::size_t terms, std::size_t line_te
                       const OnlineSvrSettings& learner)
     : precise(inputs, terms, precise_settings(inputs, terms, learner)),
       memory(inputs, terms, memory_settings(inputs, terms, learner)),
-      physics(inputs, terms, {.terms = terms}),
-      line(inputs, terms, {.terms = line_terms}),
+      physics(inputs, terms, physics_settings(terms)),
+      line(inputs, terms, line_settings(line_terms)),
       mean(inputs, terms, {}) {}
 
 Committee::Committee(std::size_t inputs, std::size_t terms, const OnlineSvrSettings& settings,
@@ -107,8 +115,7 @@ std::size_t Committee::bytes(std::size_t inputs, std::size_t terms,
            SvrFunction::bytes(inputs, terms, places);
     for (const SparseRegressionSettings& fit :
          {precise_settings(inputs, terms, settings), memory_settings(inputs, terms, settings),
-          SparseRegressionSettings{.terms = terms}, SparseRegressionSettings{.terms = plan.line},
-          SparseRegressionSettings{}}) {
+          physics_settings(terms), line_settings(plan.line), SparseRegressionSettings{}}) {
       sum += SparseRegression::bytes(inputs, terms, fit) + sizeof(SvrFunction) +
              SvrFunction::bytes(inputs, terms, fit.most_centres);
     }

@@ -16,10 +16,6 @@ std::size_t width(const SparseRegressionSettings& settings) {
   return settings.terms + 1 + settings.most_centres;
 }
 
-bool is_linear(const SparseRegressionSettings& settings) {
-  return settings.most_centres == 0;
-}
-
 }  // namespace
 
 SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
@@ -28,7 +24,7 @@ SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
       centres_(inputs, settings.most_centres),
       newton_(settings.most_centres * settings.most_centres),
       fit_(width(settings),
-           is_linear(settings) ? kOnline.members.linear_least_prior : settings.term_prior),
+           settings.prior_by_noise ? kOnline.members.least_prior : settings.term_prior),
       features_(fit_.terms()),
       kappa_(settings.most_centres),
       beta_(settings.most_centres),
@@ -36,7 +32,7 @@ SparseRegression::SparseRegression(std::size_t inputs, std::size_t terms,
       expected_(fit_.terms()),
       information_(fit_.terms(), settings.ridge),
       model_(MixedKernel(settings.gamma, {}, inputs, terms), settings.most_centres) {
-  if (is_linear(settings)) {
+  if (settings.prior_by_noise) {
     shrunk_ = fit_;
   }
   clear();
@@ -46,7 +42,7 @@ std::size_t SparseRegression::bytes(std::size_t inputs, std::size_t terms,
                                     const SparseRegressionSettings& settings) {
   const std::size_t m = width(settings);
   const std::size_t centres = settings.most_centres;
-  const std::size_t fits = is_linear(settings) ? 2 : 1;
+  const std::size_t fits = settings.prior_by_noise ? 2 : 1;
   return (fits * (m * (m + 1) + 5 * m) + 4 * m + centres * centres + 2 * centres + terms) *
              sizeof(double) +
          SampleStore::bytes(inputs, centres) + SvrFunction::bytes(inputs, terms, centres);
@@ -106,7 +102,7 @@ void SparseRegression::doubt_terms(double samples) {
 
 void SparseRegression::rescale(std::span<const double> factors, double gain, double offset) {
   correlation_.rescale(gain);
-  if (!is_linear(settings_)) {
+  if (settings_.most_centres > 0) {
     clear();
     return;
   }
@@ -120,10 +116,12 @@ void SparseRegression::rescale(std::span<const double> factors, double gain, dou
   std::ranges::copy(fit_.theta(), features_.begin());
   features_[first_centre() - 1] += offset;
   fit_.set_theta(features_);
-  for (std::size_t k = 0; k < settings_.terms; ++k) {
-    expected_[k] *= gain / factors[k];
+  if (shrunk_) {
+    for (std::size_t k = 0; k < settings_.terms; ++k) {
+      expected_[k] *= gain / factors[k];
+    }
+    expected_.back() = gain * expected_.back() + offset;
   }
-  expected_.back() = gain * expected_.back() + offset;
   publish();
 }
 
@@ -228,7 +226,7 @@ void SparseRegression::compute_features(std::span<const double> z, double new_pl
   std::ranges::fill(features_, 0.0);
   std::ranges::copy(z.subspan(centres_.dimension(), settings_.terms), features_.begin());
   features_[first_centre() - 1] = 1.0;
-  if (is_linear(settings_)) {
+  if (settings_.most_centres == 0) {
     return;
   }
   const std::span<const double> place = z.first(centres_.dimension());
@@ -261,7 +259,7 @@ double SparseRegression::weight_of(double error) const {
 
 double SparseRegression::prior_samples() const {
   const double noise = usual_error_.value();
-  return std::min(1.0, noise * noise * correlation_.rows_per_sample());
+  return std::min(settings_.term_prior, noise * noise * correlation_.rows_per_sample());
 }
 
 // The function of θ in its usual basis: β = L⁻ᵀ θ_v.

@@ -23,7 +23,8 @@ struct SparseRegressionSettings {
   double gamma = 0.2;            ///< γ of the kernel (eq. 6)
   double new_place = 0.1;        ///< fraction of a kernel function's squared norm for a new centre
   double ridge = 1.0;            ///< noise variance relative to the kernel part's
-  double term_prior = 1.0;       ///< with kernels: prior of a term without effect [samples]
+  double term_prior = 1.0;       ///< prior of a term without effect [samples]
+  bool prior_by_noise = false;   ///< without kernels: less of this prior with little noise
 };
 
 /// Robust sparse kernel least squares over every sample since the start, without a buffer:
@@ -37,10 +38,10 @@ struct SparseRegressionSettings {
 /// earlier centres, and samples learned before stay valid. The prior is the |f|² of kernel ridge
 /// regression in the Hilbert space.
 ///
-/// The prior of a linear regression says that a term has no effect, with the weight of σ²τ rows, at
-/// most one: weights of scaled terms vary by about 1, σ is the usual error, and τ rows count as an
-/// independent sample. With little noise the samples of a first minute tell terms apart that go
-/// together.
+/// With `prior_by_noise` the prior has the weight of σ²τ rows, at most `term_prior`: weights of
+/// scaled terms vary by about 1, σ is the usual error, and τ rows count as an independent sample.
+/// With little noise the samples of a first minute tell terms apart that go together. publish()
+/// then costs O(m³): for few terms.
 ///
 /// A sample with an error of e > 2.5 usual errors has the weight (2.5/e)², which makes the fit
 /// robust to one-sided outliers as well. Allocates in the constructor only.
@@ -56,7 +57,7 @@ class SparseRegression {
   /// update() without publish(), for several samples; publish() has to follow the last.
   /// `successive`: the sample follows the one before in time.
   void learn(std::span<const double> z, double y, bool successive = true);
-  void publish();  ///< Updates model(). Cost O(m²).
+  void publish();  ///< Updates model(). Cost O(m²), see above.
 
   /// The learned function, as of the last publish().
   const SvrFunction& model() const { return model_; }
@@ -66,7 +67,7 @@ class SparseRegression {
   /// Work of learn() and publish() [visited numbers].
   std::size_t work() const {
     const std::size_t m = first_centre() + centres();
-    return 4 * m * m;
+    return 4 * m * m + (shrunk_ ? m * m * m / 3 : 0);
   }
 
   /// Standard error of a term's weight, in units of the standardised target per scaled term;
@@ -136,7 +137,7 @@ class SparseRegression {
   SampleStore centres_;
   std::vector<double> newton_;           ///< L, row-major
   TriangularFit fit_;                    ///< of φ, 1, v
-  std::optional<TriangularFit> shrunk_;  ///< of a linear regression: fit_ with the prior
+  std::optional<TriangularFit> shrunk_;  ///< with `prior_by_noise`: fit_ with the prior
   std::vector<double> features_;         ///< φ, 1, v of the present sample
   std::vector<double> kappa_;            ///< scratch: a value per centre
   std::vector<double> beta_;             ///< a value per centre

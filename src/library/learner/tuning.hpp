@@ -64,7 +64,8 @@ struct OnlineTuning {
     double precise_new_place = 0.01;   ///< fraction of a kernel function's squared norm
     double precise_ridge = 0.01;       ///< noise variance relative to the kernel part's
     double precise_term_prior = 0.02;  ///< samples
-    double linear_least_prior = 1e-3;  ///< against a singular fit [samples]: by hand
+    double physics_term_prior = precise_term_prior;  ///< samples
+    double least_prior = 1e-3;  ///< of `line`, against a singular fit [samples]: by hand
     std::size_t memory_centres = 150;
     double memory_gamma = 0.2;       ///< γ for six inputs
     double gamma_inputs = 6.0;       ///< γ is proportional to 1/√inputs

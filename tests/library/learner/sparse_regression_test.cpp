@@ -139,7 +139,7 @@ double error_of_weights(double noise) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     RandomStream random(seed, "collinear");
     const Eigen::Vector3d weights(random.normal(), random.normal(), random.normal());
-    SparseRegression line(1, 3, {.terms = 3});
+    SparseRegression line(1, 3, {.terms = 3, .prior_by_noise = true});
     for (int i = 0; i < 100; ++i) {
       const double common = random.normal();
       std::vector<double> z{0.0};
@@ -245,10 +245,10 @@ TEST(SparseRegression, DoubtedTwiceItKnowsTermsAsWellAsDoubtedOnce) {
   EXPECT_NEAR(line.term_error(0), once, 0.15 * once);
 }
 
-// A linear regression's prior depends on more than its rows.
+// A prior by the noise depends on more than the rows.
 TEST(SparseRegression, SavedAfterADoubtItSaysTheSame) {
   RandomStream random(17, "memory");
-  SparseRegression line(2, 1, {.terms = 1});
+  SparseRegression line(2, 1, {.terms = 1, .prior_by_noise = true});
   for (int i = 0; i < 2000; ++i) {
     const std::vector<double> z = sample(random);
     line.update(z, truth(z) + 0.2 * random.normal());
@@ -257,7 +257,7 @@ TEST(SparseRegression, SavedAfterADoubtItSaysTheSame) {
   line.forget_usual_error();
   Archive saved;
   line.visit(saved);
-  SparseRegression loaded(2, 1, {.terms = 1});
+  SparseRegression loaded(2, 1, {.terms = 1, .prior_by_noise = true});
   Archive archive(saved.bytes());
   loaded.visit(archive);
   archive.finish();
