@@ -6,9 +6,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/angle.hpp"
@@ -182,63 +179,68 @@ double size_of(const ParameterFit& fit, const FittedParameter& parameter) {
 
 // The best next manoeuvre, and what is known after it.
 struct DriveChoice {
-  double gain = 0.0;
-  const Manoeuvre* manoeuvre = nullptr;
+  double gain = 0.0;  // per second
+  Manoeuvre manoeuvre{};
   DriveProgress progress{};
 };
 
-// The dictionary, searched for the largest gain again and again. On six axes, where a candidate
-// takes milliseconds, gains count as falling from choice to choice, so that a candidate is asked
-// again only if its last gain is above the best (Minoux 1978); in the plane every candidate is.
-class DriveSearch {
+// Candidates for the next manoeuvre. In the plane the dictionary. On six axes fresh draws at every
+// choice, as strong as the bounds allow: pushes of several axes at once tell more per second than
+// pushes of a single axis, and bounds of tilt depend on the motion so far.
+class Candidates {
  public:
-  explicit DriveSearch(const ThrusterPush& push)
-      : dictionary_(manoeuvres_for(push)),
-        asks_all_(push.axes() == kPlanarAxes),
-        last_(dictionary_.size(), std::numeric_limits<double>::infinity()),
-        blocked_(dictionary_.size(), false),
-        order_(dictionary_.size()) {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-  }
+  explicit Candidates(const ThrusterPush& push)
+      : push_(push),
+        draws_(push),
+        dictionary_(push.axes() == kPlanarAxes ? manoeuvres_for(push) : std::vector<Manoeuvre>{}) {}
 
-  DriveChoice best(const DriveRecord& record, const PossibleVehicles& possible,
-                   const DriveGoal& goal, const DriveProgress& now, double left_s) {
-    if (!asks_all_) {
-      std::ranges::stable_sort(order_, std::greater{},
-                               [this](std::size_t place) { return last_[place]; });
+  std::vector<Manoeuvre> next(const PossibleVehicles& possible) {
+    if (!dictionary_.empty()) {
+      return dictionary_;
     }
-    DriveChoice best;
-    for (const std::size_t place : order_) {
-      const Manoeuvre& manoeuvre = dictionary_[place];
-      if (!asks_all_ && last_[place] <= best.gain) {
-        break;
-      }
-      if (manoeuvre.duration_s() > left_s + 1e-9 ||
-          (blocked_[place] && !possible.allows(manoeuvre))) {
-        continue;
-      }
-      DriveRecord longer = record;
-      longer.add(manoeuvre);
-      DriveProgress progress = goal.progress(longer.windows());
-      const double gain = (now.missing - progress.missing) / manoeuvre.duration_s();
-      last_[place] = std::isfinite(gain) ? gain : 0.0;
-      if (last_[place] > best.gain) {
-        blocked_[place] = !blocked_[place] && !possible.allows(manoeuvre);
-        if (!blocked_[place]) {
-          best = {last_[place], &manoeuvre, std::move(progress)};
-        }
-      }
+    std::vector<Manoeuvre> list;
+    for (std::size_t i = 0; i < kTuning.plan.candidates; ++i) {
+      add_strongest(draws_.next(), possible, list);
     }
-    return best;
+    return list;
   }
 
  private:
+  void add_strongest(const Manoeuvre& draw, const PossibleVehicles& possible,
+                     std::vector<Manoeuvre>& list) const {
+    for (double share = 1.0; share > kTuning.plan.softest; share *= kTuning.plan.softer) {
+      Manoeuvre manoeuvre = at_amplitude(draw, share, push_);
+      if (possible.allows(manoeuvre)) {
+        list.push_back(std::move(manoeuvre));
+        return;
+      }
+    }
+  }
+
+  const ThrusterPush& push_;
+  ManoeuvreDraws draws_;
   std::vector<Manoeuvre> dictionary_;
-  bool asks_all_;
-  std::vector<double> last_;   // gains, per second
-  std::vector<bool> blocked_;  // by bounds, when last asked
-  std::vector<std::size_t> order_;
 };
+
+// The candidate with the largest gain, of those that the bounds allow.
+DriveChoice best_of(std::vector<Manoeuvre> candidates, const DriveRecord& record,
+                    const PossibleVehicles& possible, const DriveGoal& goal,
+                    const DriveProgress& now, double left_s) {
+  DriveChoice best;
+  for (Manoeuvre& manoeuvre : candidates) {
+    if (manoeuvre.duration_s() > left_s + 1e-9) {
+      continue;
+    }
+    DriveRecord longer = record;
+    longer.add(manoeuvre);
+    DriveProgress progress = goal.progress(longer.windows());
+    const double gain = (now.missing - progress.missing) / manoeuvre.duration_s();
+    if (std::isfinite(gain) && gain > best.gain && possible.allows(manoeuvre)) {
+      best = {gain, std::move(manoeuvre), std::move(progress)};
+    }
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -400,7 +402,7 @@ DriveGoal parting_goal(const ExpectedFit& expected, const std::string& first,
 
 DrivePlan plan_drive(const DrivableVehicle& vehicle, const DriveBounds& bounds,
                      const DriveGoal& goal, const DriveMotion& start) {
-  DriveSearch search(vehicle.push());
+  Candidates candidates(vehicle.push());
   PossibleVehicles possible(vehicle, bounds, start);
   DriveRecord record(vehicle, start);
   DrivePlan plan{.names = goal.names};
@@ -408,16 +410,17 @@ DrivePlan plan_drive(const DrivableVehicle& vehicle, const DriveBounds& bounds,
   plan.countdown.push_back({0.0, "", now.numbers});
   double t_s = 0.0;
   while (!now.reached) {
-    DriveChoice best = search.best(record, possible, goal, now, bounds.time_s - t_s);
-    if (best.manoeuvre == nullptr) {
+    DriveChoice best =
+        best_of(candidates.next(possible), record, possible, goal, now, bounds.time_s - t_s);
+    if (best.gain <= 0.0) {
       break;
     }
     now = std::move(best.progress);
-    possible.drive(*best.manoeuvre);
-    record.add(*best.manoeuvre);
-    t_s += best.manoeuvre->duration_s();
-    plan.manoeuvres.push_back(*best.manoeuvre);
-    plan.countdown.push_back({t_s, best.manoeuvre->name, now.numbers});
+    possible.drive(best.manoeuvre);
+    record.add(best.manoeuvre);
+    t_s += best.manoeuvre.duration_s();
+    plan.countdown.push_back({t_s, best.manoeuvre.name, now.numbers});
+    plan.manoeuvres.push_back(std::move(best.manoeuvre));
   }
   plan.reached = now.reached;
   const double misfit = vehicle.expected().now().misfit;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,8 +13,9 @@
 #include <utility>
 
 #include "core/eigen.hpp"
-#include "kelpie/core/random.hpp"
+#include "core/text.hpp"
 #include "model/six_axis_structure.hpp"
+#include "study/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -22,43 +24,25 @@ constexpr double kLeastShare = 1e-3;   // of the strongest axis: weaker axes are
 constexpr double kLeastReached = 0.5;  // of a push along an axis
 
 // Amplitudes and times of the dictionary.
-struct Levels {
-  std::vector<double> amplitudes;
-  std::vector<double> periods_s;
-};
-
 struct Dictionary {
-  std::vector<const char*> axes;
-  Levels level{{0.4, 0.7, 1.0}, {5.0, 10.0, 20.0}};
-  Levels soft{};  // of heave, roll and pitch
+  std::vector<const char*> axes{"surge", "sway", "yaw"};
+  std::vector<double> amplitudes{0.4, 0.7, 1.0};
+  std::vector<double> periods_s{5.0, 10.0, 20.0};
   std::vector<double> sequences{0.7, 1.0};
   std::vector<double> holds_s{1.5, 3.0, 6.0};  // shortest hold of a pseudo-random sequence
   double sequence_s = 18.0;
-  std::uint64_t seeds = 3;        // of sequences of all thrusters
-  std::uint64_t alone_seeds = 3;  // of sequences of one thruster
-  bool thrusters = true;          // steps and doublets of each
+  std::uint64_t seeds = 3;  // of sequences
 };
 
-Dictionary dictionary_for(std::size_t axes) {
-  if (axes == kPlanarAxes) {
-    return {.axes = {"surge", "sway", "yaw"}};
-  }
-  return {.axes = {"surge", "sway", "heave", "roll", "pitch", "yaw"},
-          .soft = {{0.1, 0.2, 0.4, 0.7}, {1.0, 2.0, 5.0, 10.0}},
-          .sequences = {0.15, 0.3, 0.6},
-          .holds_s = {0.5, 1.5, 3.0},
-          .sequence_s = 9.0,
-          .alone_seeds = 1,
-          .thrusters = false};
-}
+constexpr std::array kSixAxisNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 int percent(double share) {
   return static_cast<int>(std::lround(100.0 * share));
 }
 
-void add_axis(const ThrusterPush& push, std::size_t axis, const char* name, const Levels& levels,
-              std::vector<Manoeuvre>& list) {
-  for (const double amplitude : levels.amplitudes) {
+void add_axis(const ThrusterPush& push, std::size_t axis, const char* name,
+              const Dictionary& dictionary, std::vector<Manoeuvre>& list) {
+  for (const double amplitude : dictionary.amplitudes) {
     for (const double sense : {1.0, -1.0}) {
       std::vector<double> direction(push.axes(), 0.0);
       direction[axis] = sense;
@@ -67,7 +51,7 @@ void add_axis(const ThrusterPush& push, std::size_t axis, const char* name, cons
       const std::vector<double> back = push.speeds(direction, amplitude);
       const std::vector<double> rest(there.size(), 0.0);
       const int share = percent(sense * amplitude);
-      for (const double period_s : levels.periods_s) {
+      for (const double period_s : dictionary.periods_s) {
         const double half_s = 0.5 * period_s;
         list.push_back({fmt::format("{} step, {:g} s, {} %", name, half_s, share),
                         {{half_s, there}, {half_s, rest}}});
@@ -82,9 +66,7 @@ void add_axes(const ThrusterPush& push, const Dictionary& dictionary,
               std::vector<Manoeuvre>& list) {
   for (std::size_t axis = 0; axis < dictionary.axes.size(); ++axis) {
     if (push.reaches(axis)) {
-      const bool is_soft = push.axes() == kSixAxes && axis >= 2 && axis <= 4;
-      add_axis(push, axis, dictionary.axes[axis], is_soft ? dictionary.soft : dictionary.level,
-               list);
+      add_axis(push, axis, dictionary.axes[axis], dictionary, list);
     }
   }
 }
@@ -94,7 +76,7 @@ void add_turns(const ThrusterPush& push, const Dictionary& dictionary,
   if (!push.reaches(0) || !push.reaches(push.axes() - 1)) {
     return;
   }
-  for (const double amplitude : dictionary.level.amplitudes) {
+  for (const double amplitude : dictionary.amplitudes) {
     for (const double turn : {0.3, 0.8}) {
       for (const double ahead : {1.0, -1.0}) {
         std::vector<double> direction(push.axes(), 0.0);
@@ -116,14 +98,14 @@ void add_turns(const ThrusterPush& push, const Dictionary& dictionary,
 void add_thrusters(const ThrusterRange& range, const Dictionary& dictionary,
                    std::vector<Manoeuvre>& list) {
   const std::size_t thrusters = range.most.size();
-  for (std::size_t i = 0; dictionary.thrusters && i < thrusters; ++i) {
-    for (const double amplitude : dictionary.level.amplitudes) {
+  for (std::size_t i = 0; i < thrusters; ++i) {
+    for (const double amplitude : dictionary.amplitudes) {
       for (const double sense : {1.0, -1.0}) {
         std::vector<double> there(thrusters, 0.0);
         std::vector<double> back(thrusters, 0.0);
         there[i] = amplitude * range.full(i, sense);
         back[i] = amplitude * range.full(i, -sense);
-        for (const double period_s : dictionary.level.periods_s) {
+        for (const double period_s : dictionary.periods_s) {
           list.push_back({fmt::format("doublet of thruster {}, {:g} s, {} %", i + 1, period_s,
                                       percent(sense * amplitude)),
                           {{0.5 * period_s, there}, {0.5 * period_s, back}}});
@@ -142,9 +124,6 @@ void add_sequences(const ThrusterRange& range, const Dictionary& dictionary,
       for (std::uint64_t seed = 1; seed <= dictionary.seeds; ++seed) {
         for (std::size_t only = 0; only <= thrusters; ++only) {
           const bool all = only == thrusters;
-          if (!all && seed > dictionary.alone_seeds) {
-            continue;
-          }
           Manoeuvre sequence{all ? fmt::format("sequence {} of all thrusters, {:g} s, {} %", seed,
                                                hold_s, percent(amplitude))
                                  : fmt::format("sequence {} of thruster {}, {:g} s, {} %", seed,
@@ -281,18 +260,77 @@ std::vector<double> SixAxisPush::held(std::vector<double> speeds) const {
 }
 
 std::vector<Manoeuvre> manoeuvres_for(const ThrusterPush& push) {
-  const Dictionary dictionary = dictionary_for(push.axes());
+  const Dictionary dictionary;
   std::vector<Manoeuvre> list;
   add_axes(push, dictionary, list);
   add_turns(push, dictionary, list);
   add_thrusters(push.range(), dictionary, list);
   add_sequences(push.range(), dictionary, list);
-  for (Manoeuvre& manoeuvre : list) {
-    for (HeldSpeeds& part : manoeuvre.parts) {
-      part.speeds = push.held(std::move(part.speeds));
+  return list;
+}
+
+ManoeuvreDraws::ManoeuvreDraws(const ThrusterPush& push) : push_(push), random_(1, "manoeuvres") {}
+
+Manoeuvre ManoeuvreDraws::next() {
+  const auto steps = static_cast<double>(1 + random_.below(kTuning.plan.longest_hold));
+  const double hold_s = kManoeuvreStepS * steps;
+  const double most = std::min(kTuning.plan.most_holds, kTuning.plan.longest_draw_s / hold_s);
+  const auto holds = 1 + random_.below(static_cast<std::uint64_t>(most));
+  const std::vector<double> weights = drawn_weights();
+  std::vector<std::string> axes;
+  for (std::size_t axis = 0; axis < weights.size(); ++axis) {
+    if (weights[axis] > 0.0) {
+      axes.emplace_back(kSixAxisNames[axis]);
     }
   }
-  return list;
+  Manoeuvre draw{fmt::format("{}, {} {} of {:g} s",
+                             axes.empty() ? "all thrusters" : join_text(axes, " and "), holds,
+                             holds == 1 ? "hold" : "holds", hold_s)};
+  for (std::uint64_t i = 0; i < holds; ++i) {
+    draw.parts.push_back({hold_s, drawn_speeds(weights)});
+  }
+  return draw;
+}
+
+// Half of the draws are along no axis.
+std::vector<double> ManoeuvreDraws::drawn_weights() {
+  std::vector<double> weights(push_.axes(), 0.0);
+  const bool along_axes = random_.below(2) == 0;
+  for (std::size_t axis = 0; along_axes && axis < weights.size(); ++axis) {
+    if (push_.reaches(axis) && random_.below(2) == 0) {
+      weights[axis] = random_.uniform();
+    }
+  }
+  return weights;
+}
+
+std::vector<double> ManoeuvreDraws::drawn_speeds(const std::vector<double>& weights) {
+  std::vector<double> wish = weights;
+  double most = 0.0;
+  for (double& level : wish) {
+    level *= random_.uniform(-1.0, 1.0);
+    most = std::max(most, std::abs(level));
+  }
+  if (most > 0.0) {
+    return push_.speeds(wish, std::sqrt(most));
+  }
+  const ThrusterRange& range = push_.range();
+  std::vector<double> speeds;
+  for (std::size_t i = 0; i < range.most.size(); ++i) {
+    speeds.push_back(random_.uniform(range.least[i], range.most[i]));
+  }
+  return speeds;
+}
+
+Manoeuvre at_amplitude(Manoeuvre draw, double amplitude, const ThrusterPush& push) {
+  for (HeldSpeeds& part : draw.parts) {
+    for (double& speed : part.speeds) {
+      speed *= amplitude;
+    }
+    part.speeds = push.held(std::move(part.speeds));
+  }
+  draw.name += fmt::format(", {} %", percent(amplitude));
+  return draw;
 }
 
 }  // namespace kelpie::study

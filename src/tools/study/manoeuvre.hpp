@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "kelpie/core/random.hpp"
 #include "kelpie/motion/planar_fit.hpp"
 #include "model/six_axis_fit.hpp"
 
@@ -97,11 +98,31 @@ class SixAxisPush : public ThrusterPush {
   std::vector<double> holding_;  ///< thrusts
 };
 
-/// The dictionary (Fossen 2011, ch. 7.3 and 12.3; ITTC 7.5-06-02-05; doublets and sequences:
-/// Morelli & Klein 2016, ch. 9): steps and doublets of each axis where the thrusters push so,
-/// zig-zags, circles, in the plane steps and doublets of every thruster, and pseudo-random binary
-/// sequences of one and of all thrusters, each at several periods and amplitudes. On six axes
-/// heave, roll and pitch are pushed more softly and for shorter times. Deterministic.
+/// The dictionary of the plane (Fossen 2011, ch. 7.3 and 12.3; ITTC 7.5-06-02-05; doublets and
+/// sequences: Morelli & Klein 2016, ch. 9): steps and doublets of each axis where the thrusters
+/// push so and of every thruster, zig-zags, circles, and pseudo-random binary sequences of one and
+/// of all thrusters, each at several periods and amplitudes. Deterministic.
 std::vector<Manoeuvre> manoeuvres_for(const ThrusterPush& push);
+
+/// Draws of speeds evenly distributed over the range of all thrusters, or along some axes, held for
+/// equal times: "surge and pitch, 3 holds of 0.5 s". Deterministic.
+class ManoeuvreDraws {
+ public:
+  /// `push` has to outlive the draws.
+  explicit ManoeuvreDraws(const ThrusterPush& push);
+
+  /// At full amplitude, not held() yet. Allocates.
+  Manoeuvre next();
+
+ private:
+  std::vector<double> drawn_speeds(const std::vector<double>& weights);
+  std::vector<double> drawn_weights();
+
+  const ThrusterPush& push_;
+  RandomStream random_;
+};
+
+/// A draw at a share of its amplitude, held(): "surge and pitch, 3 holds of 0.5 s, 45 %".
+Manoeuvre at_amplitude(Manoeuvre draw, double amplitude, const ThrusterPush& push);
 
 }  // namespace kelpie::study

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace kelpie::study {
 
@@ -69,6 +70,13 @@ inline constexpr struct Tuning {
     double most_turns_per_s = 1.0;  ///< of a plausible vehicle
     double longest_step_s = 0.05;   ///< of the integration on six axes
     double rows_per_window = 8.0;   ///< of a drive on six axes, at least
+    // Draws on six axes; docs/measured/applications.md, "Planned drives".
+    std::size_t candidates = 32;     ///< per choice
+    std::uint64_t longest_hold = 6;  ///< [kManoeuvreStepS]
+    double most_holds = 6.0;
+    double longest_draw_s = 6.0;
+    double softer = 0.85;   ///< amplitude of the next try, of a draw that leaves the bounds
+    double softest = 0.05;  ///< amplitude; no softer draw is tried
   } plan;
 
   int nominal_places = 4000;       ///< in the range of the log: many for 122 terms, and cheap

@@ -12,6 +12,7 @@
 #include "kelpie/core/random.hpp"
 #include "motion/weak_form.hpp"
 #include "study/six_axes.hpp"
+#include "study/tuning.hpp"
 #include "vehicle/frames.hpp"
 #include "vehicle/pilot.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -310,7 +311,8 @@ TEST(DrivePlan, HeaveAndPitchAreToldByHeaveAndPitch) {
                                                         "heave_quadratic_drag"}));
   const auto has = [&](const char* axis) {
     return std::ranges::any_of(heavy.plan.manoeuvres, [&](const Manoeuvre& manoeuvre) {
-      return manoeuvre.name.starts_with(axis) || manoeuvre.name.find("of all") != std::string::npos;
+      return manoeuvre.name.find(axis) != std::string::npos ||
+             manoeuvre.name.starts_with("all thrusters");
     });
   };
   EXPECT_TRUE(has("heave"));
@@ -327,6 +329,50 @@ TEST(DrivePlan, ExpectsTheErrorsOfSixAxes) {
     EXPECT_LT(number_of(heavy.after, heavy.plan.names[i]),
               number_of(heavy.before, heavy.plan.names[i]));
   }
+}
+
+double worst_of(const ParameterFit& fit, const std::vector<std::string>& names) {
+  double worst = 0.0;
+  for (const std::string& name : names) {
+    worst = std::max(worst, number_of(fit, name));
+  }
+  return worst;
+}
+
+TEST(DrivePlan, SecondsOnSixAxesTellMoreThanAPilot) {
+  HeavyDrive drive(1);
+  drive.pilot(60.0);
+  drive.hold(std::vector(8, 0.0), 8.0);
+  const ExpectedSixAxisFit expected(drive.rows());
+  const DrivableSixAxisVehicle vehicle(expected, {std::vector(8, -1.0), std::vector(8, 1.0)});
+  const DriveGoal goal =
+      telling_goal(expected, wanted_places(expected.now(), {"quadratic_drag", "heave_linear_drag"}),
+                   0.05, [](ParameterFit&) {});
+  HeavyDrive piloted = drive;
+  const DrivePlan plan = plan_drive(vehicle, {.time_s = 20.0, .speed_m_s = 0.8}, goal);
+  drive.extent_of(plan);
+  piloted.pilot(plan.duration_s());
+  EXPECT_LT(worst_of(fit_six_axes(drive.rows()), plan.names),
+            0.5 * worst_of(fit_six_axes(piloted.rows()), plan.names));
+}
+
+TEST(DrivePlan, DrawsAreShortAndWithinTheRange) {
+  const HeavyPlan& heavy = heavy_plan();
+  ASSERT_FALSE(heavy.plan.manoeuvres.empty());
+  std::size_t combined = 0;
+  for (const Manoeuvre& manoeuvre : heavy.plan.manoeuvres) {
+    EXPECT_LE(manoeuvre.duration_s(), kTuning.plan.longest_draw_s) << manoeuvre.name;
+    combined += manoeuvre.name.starts_with("all thrusters") ||
+                        manoeuvre.name.find(" and ") != std::string::npos
+                    ? 1
+                    : 0;
+    for (const HeldSpeeds& part : manoeuvre.parts) {
+      EXPECT_TRUE(std::ranges::all_of(part.speeds, [](double speed) {
+        return std::abs(speed) <= 1.0;
+      })) << manoeuvre.name;
+    }
+  }
+  EXPECT_GT(combined, 0U);
 }
 
 }  // namespace
