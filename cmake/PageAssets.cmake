@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Files embedded in the program, as one C++ source: page.css, figure.js, the live page's script, and uPlot,
 # which scripts/setup.sh fetches (src/tools/chart/README.md; without uPlot, pages have tables and sentences only); the
-# evaluator and the reader of blocks that exported C files hold; and the vehicle of `kelpie live --demo`.
+# evaluator, its second derivatives and the reader of blocks that exported C files hold; and the vehicle of `kelpie live --demo`.
 set(KELPIE_UPLOT "${PROJECT_SOURCE_DIR}/build/uplot/package" CACHE PATH
     "Where the npm package uplot was unpacked")
 set(KELPIE_PAGE_STYLE "${PROJECT_SOURCE_DIR}/src/tools/chart/page.css")
@@ -11,6 +11,7 @@ set(KELPIE_LIBRARY_SCRIPT "${KELPIE_UPLOT}/dist/uPlot.iife.min.js")
 set(KELPIE_LIBRARY_STYLE "${KELPIE_UPLOT}/dist/uPlot.min.css")
 set(KELPIE_LIBRARY_LICENCE "${KELPIE_UPLOT}/LICENSE")
 set(KELPIE_MODEL_EVALUATOR "${PROJECT_SOURCE_DIR}/src/tools/format/model_eval.inc")
+set(KELPIE_MODEL_CURVE "${PROJECT_SOURCE_DIR}/src/tools/format/model_curve.inc")
 set(KELPIE_MODEL_BLOCK "${PROJECT_SOURCE_DIR}/src/tools/format/model_block.inc")
 
 set(KELPIE_DAGON "${PROJECT_SOURCE_DIR}/vehicles/dagon.toml")
@@ -23,7 +24,7 @@ string(CONCAT page_assets "// Made by cmake/PageAssets.cmake.\n"
        "#include \"chart/page_assets.hpp\"\n#include \"format/c_templates.hpp\"\n"
        "#include \"vehicle/dagon.hpp\"\n\n")
 foreach(name IN ITEMS PageStyle FigureScript LiveScript LibraryScript LibraryStyle LibraryLicence
-        ModelEvaluator ModelBlock Dagon)
+        ModelEvaluator ModelCurve ModelBlock Dagon)
   set(room chart)
   if(name MATCHES "^Model")
     set(room format)

@@ -128,6 +128,7 @@ void check_wishes(const ExportArguments& options) {
       std::to_array<std::pair<const char*, bool>>({{"--header", !options.header.empty()},
                                                    {"--float", options.code.single},
                                                    {"--assess", options.code.assess},
+                                                   {"--hessian", options.code.hessian},
                                                    {"--casadi", options.code.casadi}});
   for (const auto& [option, is_given] : wishes) {
     require(!is_given, option, "needs --c FILE or --live FILE");
@@ -176,8 +177,11 @@ void add_export(CLI::App& app) {
   command->add_flag("--float", options->code.single, "float instead of double");
   command->add_flag("--assess", options->code.assess,
                     "a function that tells interval and novelty, too");
+  command->add_flag("--hessian", options->code.hessian,
+                    "functions that tell second derivatives, too");
   command->add_flag("--casadi", options->code.casadi,
-                    "the functions that CasADi's external() and acados call, too");
+                    "the functions that CasADi's external() and acados call, too, and those of "
+                    "--hessian");
   command
       ->add_option("--name", options->code.name,
                    "beginning of the functions' names; name of the unit of FMI")

@@ -7,8 +7,9 @@
 // and $KEPT are replaced by model_c.cpp; everything else stands in model_eval.inc.
 namespace kelpie::format {
 
-/// model_eval.inc and model_block.inc, embedded by cmake/PageAssets.cmake.
+/// model_eval.inc, model_curve.inc and model_block.inc, embedded by cmake/PageAssets.cmake.
 extern const std::string_view kModelEvaluator;
+extern const std::string_view kModelCurve;
 extern const std::string_view kModelBlock;
 
 inline constexpr std::string_view kLiveNote =
@@ -125,6 +126,29 @@ void $NAME_assess(const double x[$INPUTS], double y[$TARGETS], double half_width
 }
 )";
 
+inline constexpr std::string_view kLiveHessian = R"(
+void $NAME_hessian(const double x[$INPUTS], double hessian[$TARGETS * $INPUTS * $INPUTS])
+{
+  const struct kelpie_tables *const tables = $NAME_newest();
+  if (tables) {
+    kelpie_hessians(tables, x, hessian, 0, 0, 0);
+  } else {
+    $NAME_unknown(hessian, $TARGETS * $INPUTS * $INPUTS);
+  }
+}
+
+void $NAME_hessian_vector(const double x[$INPUTS], const double v[$INPUTS],
+                          const double lambda[$TARGETS], double product[$INPUTS])
+{
+  const struct kelpie_tables *const tables = $NAME_newest();
+  if (tables) {
+    kelpie_hessians(tables, x, 0, v, lambda, product);
+  } else {
+    $NAME_unknown(product, $INPUTS);
+  }
+}
+)";
+
 /// The numbers of an input's actuator in the block; without numbers, none.
 inline constexpr std::string_view kLiveActuator = R"(
 static struct $NAME_actuator $NAME_actuator_of(int input)
@@ -166,6 +190,18 @@ void $NAME_predict_with_jacobian(const $REAL x[$INPUTS], $REAL y[$TARGETS],
 inline constexpr std::string_view kAssessPrototype =
     R"(void $NAME_assess(const $REAL x[$INPUTS], $REAL y[$TARGETS], $REAL half_width[$TARGETS],
                   $REAL novelty[$TARGETS]);
+)";
+
+inline constexpr std::string_view kHessianNote =
+    R"( * $NAME_hessian gives the second derivatives, hessian[(i * $INPUTS + j) * $INPUTS + k] of y[i] by
+ * x[j] and x[k]; $NAME_hessian_vector gives their product with a vector, summed over all y[i] with
+ * weights lambda[i]. Either call has the exponentials of one Jacobian.
+)";
+
+inline constexpr std::string_view kHessianPrototypes =
+    R"(void $NAME_hessian(const $REAL x[$INPUTS], $REAL hessian[$TARGETS * $INPUTS * $INPUTS]);
+void $NAME_hessian_vector(const $REAL x[$INPUTS], const $REAL v[$INPUTS],
+                          const $REAL lambda[$TARGETS], $REAL product[$INPUTS]);
 )";
 
 inline constexpr std::string_view kActuatorNote =
@@ -300,9 +336,25 @@ void $NAME_assess(const $REAL x[$INPUTS], $REAL y[$TARGETS], $REAL half_width[$T
 }
 )";
 
+inline constexpr std::string_view kHessian = R"(
+void $NAME_hessian(const $REAL x[$INPUTS], $REAL hessian[$TARGETS * $INPUTS * $INPUTS])
+{
+  kelpie_hessians(&$NAME_tables, x, hessian, 0, 0, 0);
+}
+
+void $NAME_hessian_vector(const $REAL x[$INPUTS], const $REAL v[$INPUTS],
+                          const $REAL lambda[$TARGETS], $REAL product[$INPUTS])
+{
+  kelpie_hessians(&$NAME_tables, x, 0, v, lambda, product);
+}
+)";
+
 /// The model as a function of one input x and one output y, by the convention of generated C that
-/// CasADi's external() and acados call (howto/controller.md), with its Jacobian. Dense vectors have
-/// the sparsity {rows, 1, 1}; the output that a Jacobian is given but doesn't need has no entries.
+/// CasADi's external() and acados call (howto/controller.md), with its Jacobian and the Jacobian of
+/// that. Dense arrays have the sparsity {rows, columns, 1}; outputs that a derivative is given but
+/// doesn't need have no entries, {rows, columns, 0, ...}. From these two functions CasADi makes
+/// derivatives of either mode, one call for all directions; an adj1_ function would be called once
+/// for each direction instead.
 inline constexpr std::string_view kCasadi = R"(
 /* For CasADi: external("$NAME", "./model.so"). acados wants -Dcasadi_int=int. */
 #ifndef casadi_int
@@ -312,7 +364,10 @@ inline constexpr std::string_view kCasadi = R"(
 static const casadi_int $NAME_dense_x[3] = {$INPUTS, 1, 1};
 static const casadi_int $NAME_dense_y[3] = {$TARGETS, 1, 1};
 static const casadi_int $NAME_dense_jacobian[3] = {$TARGETS, $INPUTS, 1};
+static const casadi_int $NAME_dense_hessian[3] = {$TARGETS * $INPUTS, $INPUTS, 1};
 static const casadi_int $NAME_unused_y[4] = {$TARGETS, 1, 0, 0};
+static const casadi_int $NAME_unused_jacobian[$INPUTS + 3] = {$TARGETS, $INPUTS, 0};
+static const casadi_int $NAME_none_by_y[$TARGETS + 3] = {$TARGETS * $INPUTS, $TARGETS, 0};
 
 /* A missing argument counts as zeros; an unwanted result is left out. */
 static const double *$NAME_given(const double **arg, double *zeros)
@@ -358,9 +413,33 @@ int jac_$NAME(const double **arg, double **res, casadi_int *iw, double *w, int m
   }
   return $FAILED;
 }
+
+/* Arguments x, y and dy/dx; results the derivatives of dy/dx, taken by columns, by x, and by y: none. */
+int jac_jac_$NAME(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+int jac_jac_$NAME(const double **arg, double **res, casadi_int *iw, double *w, int mem)
+{
+  double zeros[$INPUTS];
+  double hessian[$TARGETS * $INPUTS * $INPUTS];
+  int i, j, k;
+  (void)iw;
+  (void)w;
+  (void)mem;
+  if (res[0]) {
+    $NAME_hessian($NAME_given(arg, zeros), hessian);
+    for (k = 0; k < $INPUTS; ++k) {
+      for (j = 0; j < $INPUTS; ++j) {
+        for (i = 0; i < $TARGETS; ++i) {
+          res[0][(k * $INPUTS + j) * $TARGETS + i] = hessian[(i * $INPUTS + j) * $INPUTS + k];
+        }
+      }
+    }
+  }
+  return $FAILED;
+}
 )";
 
-/// What CasADi asks of a function $F before its first call: $ARGUMENTS and their names and shapes.
+/// What CasADi asks of a function $F before its first call: $ARGUMENTS and $RESULTS, with names and
+/// shapes.
 inline constexpr std::string_view kCasadiShape = R"(
 void $F_incref(void);
 void $F_decref(void);
@@ -375,20 +454,37 @@ int $F_work(casadi_int *sz_arg, casadi_int *sz_res, casadi_int *sz_iw, casadi_in
 void $F_incref(void) {}
 void $F_decref(void) {}
 casadi_int $F_n_in(void) { return $ARGUMENTS; }
-casadi_int $F_n_out(void) { return 1; }
-const char *$F_name_in(casadi_int i) { return i == 0 ? "x" : $ARGUMENTS > 1 && i == 1 ? "out_y" : 0; }
-const char *$F_name_out(casadi_int i) { return i == 0 ? "$RESULT" : 0; }
-const casadi_int *$F_sparsity_out(casadi_int i) { return i == 0 ? $NAME_dense_$SHAPE : 0; }
+casadi_int $F_n_out(void) { return $RESULTS; }
+
+const char *$F_name_in(casadi_int i)
+{
+  static const char *const names[] = {"x", "out_y", "out_jac_y_x"};
+  return i >= 0 && i < $ARGUMENTS ? names[i] : 0;
+}
+
+const char *$F_name_out(casadi_int i)
+{
+  static const char *const names[] = {"$RESULT_NAME", "$RESULT_NONE"};
+  return i >= 0 && i < $RESULTS ? names[i] : 0;
+}
 
 const casadi_int *$F_sparsity_in(casadi_int i)
 {
-  return i == 0 ? $NAME_dense_x : $ARGUMENTS > 1 && i == 1 ? $NAME_unused_y : 0;
+  return i < 0 || i >= $ARGUMENTS ? 0
+         : i == 0                 ? $NAME_dense_x
+         : i == 1                 ? $NAME_unused_y
+                                  : $NAME_unused_jacobian;
+}
+
+const casadi_int *$F_sparsity_out(casadi_int i)
+{
+  return i < 0 || i >= $RESULTS ? 0 : i == 0 ? $NAME_dense_$SHAPE : $NAME_none_by_y;
 }
 
 int $F_work(casadi_int *sz_arg, casadi_int *sz_res, casadi_int *sz_iw, casadi_int *sz_w)
 {
   if (sz_arg) *sz_arg = $ARGUMENTS;
-  if (sz_res) *sz_res = 1;
+  if (sz_res) *sz_res = $RESULTS;
   if (sz_iw) *sz_iw = 0;
   if (sz_w) *sz_w = 0;
   return 0;

@@ -66,6 +66,7 @@ struct TermTables {
   std::string slopes;  ///< never empty: C has no empty arrays
   std::size_t step_count = 0;
   std::size_t slope_count = 0;
+  std::size_t pair_count = 0;                   ///< of columns of one term
   int depth = 0;                                ///< of the stack
   std::set<std::string_view> functions{"exp"};  ///< of <math.h> that the terms call, and exp
 };
@@ -97,10 +98,13 @@ TermTables tables_of(const TermSet& terms, const CText& text) {
       tables.slopes += fmt::format("  {{{}, {}}},\n", k, column);
       ++tables.slope_count;
     }
+    const std::size_t columns = terms.term(k).columns().size();
+    tables.pair_count += columns * (columns + 1) / 2;
   }
   if (tables.slope_count == 0) {
     tables.slopes = "  {0, 0},\n";
     tables.slope_count = 1;
+    tables.pair_count = 1;
   }
   return tables;
 }
@@ -129,8 +133,9 @@ class ModelCode {
   std::string file() const {
     return comment() + includes() + prototypes() + names("input", model_.input_names) +
            names("target", targets_) + definitions() + without_licence(kModelEvaluator) +
+           (hessian() ? without_licence(kModelCurve) : "") +
            (live() ? without_licence(kModelBlock) + term_tables() + live_functions()
-                   : tables() + filled(kFunctions) + (options_.assess ? filled(kAssess) : "")) +
+                   : tables() + functions()) +
            actuators() + (options_.casadi ? casadi() : "");
   }
 
@@ -140,6 +145,7 @@ class ModelCode {
 
  private:
   bool live() const { return options_.live.has_value(); }
+  bool hessian() const { return options_.hessian || options_.casadi; }
 
   std::string includes() const {
     return live() ? "\n#define _POSIX_C_SOURCE 200809L\n#include <fcntl.h>\n#include <math.h>\n"
@@ -168,7 +174,8 @@ class ModelCode {
   }
 
   std::string prototypes() const {
-    return filled(kPrototypes) + (options_.assess ? filled(kAssessPrototype) : "") +
+    return filled(kPrototypes) + (hessian() ? filled(kHessianPrototypes) : "") +
+           (options_.assess ? filled(kAssessPrototype) : "") +
            (actuators_.empty() ? "" : filled(kActuatorPrototypes)) +
            (live() ? filled(kLivePrototypes) : "");
   }
@@ -219,6 +226,7 @@ class ModelCode {
         model_.input_names.size(), targets_.size(), model_.terms.size());
     text += fmt::format("#define KELPIE_SLOPES {}\n#define KELPIE_STACK {}\n", terms_.slope_count,
                         terms_.depth);
+    text += hessian() ? fmt::format("#define KELPIE_PAIRS {}\n", terms_.pair_count) : "";
     if (live()) {
       const auto& [file, layout] = *options_.live;
       text += fmt::format(
@@ -237,19 +245,31 @@ class ModelCode {
     return "\n" + std::string(file.substr(file.find('\n') + 1));
   }
 
+  std::string functions() const {
+    return filled(kFunctions) + (hessian() ? filled(kHessian) : "") +
+           (options_.assess ? filled(kAssess) : "");
+  }
+
   std::string live_functions() const {
-    return filled(kLiveFunctions) + (options_.assess ? filled(kLiveAssess) : "");
+    return filled(kLiveFunctions) + (hessian() ? filled(kLiveHessian) : "") +
+           (options_.assess ? filled(kLiveAssess) : "");
   }
 
   std::string casadi() const {
-    const auto shape = [this](const std::string& function, const char* arguments,
-                              const char* result, const char* output) {
+    const auto shape = [this](const std::string& function, int order, const std::string& result,
+                              const char* output) {
       const std::vector<std::pair<std::string, std::string>> words{
-          {"$F", function}, {"$ARGUMENTS", arguments}, {"$RESULT", result}, {"$SHAPE", output}};
+          {"$F", function},
+          {"$ARGUMENTS", std::to_string(order + 1)},
+          {"$RESULTS", order < 2 ? "1" : "2"},
+          {"$RESULT_NAME", result + (order < 2 ? "" : "_x")},
+          {"$RESULT_NONE", result + "_out_y"},
+          {"$SHAPE", output}};
       return filled(replaced(std::string(kCasadiShape), words));
     };
-    return filled(kCasadi) + shape("$NAME", "1", "y", "y") +
-           shape("jac_$NAME", "2", "jac_y_x", "jacobian");
+    return filled(kCasadi) + shape("$NAME", 0, "y", "y") +
+           shape("jac_$NAME", 1, "jac_y_x", "jacobian") +
+           shape("jac_jac_$NAME", 2, "jac_jac_y_x", "hessian");
   }
 
   std::string library_name(std::string_view function) const {
@@ -319,7 +339,8 @@ class ModelCode {
         c_string(options_.source), column_lines("x", model_.input_names),
         column_lines("y", targets_), shift(), gaps, text_.real(), model_.input_names.size(),
         targets_.size(), targets_.size() * model_.input_names.size(), options_.name, options_.name,
-        model_.input_names.size(), options_.assess ? filled(kAssessNote) : "",
+        model_.input_names.size(),
+        (hessian() ? filled(kHessianNote) : "") + (options_.assess ? filled(kAssessNote) : ""),
         actuators_.empty() ? "" : filled(kActuatorNote), live() ? filled(kLiveNote) : "", library(),
         live() ? ", POSIX. Calls may run side by side: every thread has a copy of the numbers."
                : "; no memory is asked for and nothing global changes, so that calls\n"

@@ -23,7 +23,8 @@ struct CodeOptions {
   std::string name = "kelpie_model";  ///< prefix of every public name
   bool single = false;                ///< float instead of double
   bool assess = false;                ///< adds NAME_assess: interval and novelty
-  bool casadi = false;                ///< adds the functions called by CasADi and acados
+  bool hessian = false;               ///< adds NAME_hessian and NAME_hessian_vector
+  bool casadi = false;                ///< adds the functions called by CasADi and acados; hessian, too
   std::string source = "model.json";  ///< origin of the model, for the comment at the top
   std::map<std::string, Unit> units;  ///< of columns, by name; missing columns have no unit
   std::optional<LiveBlock> live{};    ///< numbers from a block in place of constant tables
@@ -33,7 +34,8 @@ struct CodeOptions {
 /// model_eval.inc. The file needs exp() alone, and sqrt, sin, cos or pow for formulas with these
 /// functions. No allocation and no global state; safe from many threads. Predictions equal
 /// TrainedModel::predict_with_jacobian, in double to about 1e-13 of the scale of a target, with NaN
-/// for inputs that aren't finite; `assess` adds interval and novelty of TrainedModel::predict.
+/// for inputs that aren't finite; `assess` adds interval and novelty of TrainedModel::predict,
+/// `hessian` the second derivatives in closed form (model_curve.inc), 0 of x|x| at 0.
 ///
 /// With `live` the terms alone are constant, and model_block.inc reads all other numbers: the file
 /// then needs POSIX, and copies the latest publication into memory of the calling thread.
