@@ -61,6 +61,14 @@ class LiveModel:
         columns = self._call("jac_" + self._name, x, self.targets * self.inputs)
         return [columns[i :: self.targets] for i in range(self.targets)]
 
+    def hessian_vector(self, x: list[float], v: list[float], weights: list[float]) -> list[float]:
+        """The second derivatives of all targets, summed with these weights, times v."""
+        product = (Double * self.inputs)()
+        self._library[self._name + "_hessian_vector"](
+            (Double * len(x))(*x), (Double * len(v))(*v), (Double * len(weights))(*weights), product
+        )
+        return list(product)
+
 
 def main(path: str, seconds: float) -> None:
     model = LiveModel(path)
@@ -73,6 +81,7 @@ def main(path: str, seconds: float) -> None:
         model.jacobian(x)
         took_us.append(1e6 * (time.perf_counter() - begin))
         model.predict(x)
+        model.hessian_vector(x, [1.0] * model.inputs, [1.0] * model.targets)
         numbers.add(model.renew())
     took_us.sort()
     median, late = took_us[len(took_us) // 2], took_us[len(took_us) * 99 // 100]

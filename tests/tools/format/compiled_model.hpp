@@ -80,6 +80,23 @@ class Compiled {
     return {{half_width.begin(), half_width.end()}, {novelty.begin(), novelty.end()}};
   }
 
+  // Second derivatives of every target, one matrix by rows after the other.
+  template <typename Real>
+  std::vector<double> hessian(const std::vector<double>& x, std::size_t targets) {
+    const std::vector<Real> in(x.begin(), x.end());
+    std::vector<Real> out(targets * x.size() * x.size());
+    find<void (*)(const Real*, Real*)>("_hessian")(in.data(), out.data());
+    return {out.begin(), out.end()};
+  }
+
+  std::vector<double> hessian_vector(const std::vector<double>& x, const std::vector<double>& v,
+                                     const std::vector<double>& lambda) {
+    std::vector<double> product(x.size());
+    find<void (*)(const double*, const double*, const double*, double*)>("_hessian_vector")(
+        x.data(), v.data(), lambda.data(), product.data());
+    return product;
+  }
+
   std::string text(const std::string& array, std::size_t i) {
     return find<const char* const*>(array)[i];
   }
@@ -106,6 +123,55 @@ class Compiled {
   std::string name_;
   std::unique_ptr<void, int (*)(void*)> library_;
 };
+
+/// That the second derivatives at x are central differences of the Jacobian, `step` of the inputs to
+/// either side; and that the product with a vector is that of these matrices.
+inline void expect_bends_of_slopes(Compiled& compiled, const std::vector<double>& x,
+                                   std::size_t targets, const std::vector<double>& step) {
+  const std::size_t size = x.size();
+  const std::vector<double> hessian = compiled.hessian<double>(x, targets);
+  const auto bend = [&](std::size_t i, std::size_t j, std::size_t k) {
+    return hessian[(i * size + j) * size + k] * step[j] * step[k];
+  };
+  double largest = 0.0;
+  std::vector<double> y(targets);
+  std::vector<double> after(targets * size);
+  std::vector<double> before(targets * size);
+  std::vector<double> expected;
+  std::vector<double> said;
+  for (std::size_t k = 0; k < size; ++k) {
+    std::vector<double> moved = x;
+    moved[k] = x[k] + step[k];
+    compiled.run<double>(moved, y, after);
+    moved[k] = x[k] - step[k];
+    compiled.run<double>(moved, y, before);
+    for (std::size_t i = 0; i < targets; ++i) {
+      for (std::size_t j = 0; j < size; ++j) {
+        expected.push_back((after[i * size + j] - before[i * size + j]) / 2.0 * step[j]);
+        said.push_back(bend(i, j, k));
+        largest = std::max(largest, std::abs(said.back()));
+        ASSERT_EQ(bend(i, j, k), bend(i, k, j));
+      }
+    }
+  }
+  for (std::size_t n = 0; n < said.size(); ++n) {
+    ASSERT_NEAR(said[n], expected[n], 1e-5 * largest) << n;
+  }
+  std::vector<double> lambda(targets);
+  for (std::size_t i = 0; i < targets; ++i) {
+    lambda[i] = 2.0 * static_cast<double>(i) - 1.0;
+  }
+  const std::vector<double> product = compiled.hessian_vector(x, step, lambda);
+  for (std::size_t j = 0; j < size; ++j) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < targets; ++i) {
+      for (std::size_t k = 0; k < size; ++k) {
+        sum += lambda[i] * bend(i, j, k);
+      }
+    }
+    ASSERT_NEAR(product[j] * step[j], sum, 1e-12 * largest);
+  }
+}
 
 /// A function of a library as CasADi's external() asks for it and calls it.
 class CasadiFunction {

@@ -141,6 +141,7 @@ TEST(LiveLibrary, FollowsTheLearnerFromTheExportOn) {
     const std::vector<double>& x = drive.x[(7 * row) % drive.x.size()];
     shared.predict_with_jacobian(x, y, slopes);
     expect_predicts_as(library, x, y, slopes);
+    expect_bends_of_slopes(library, x, 2, std::vector<double>(2, 1e-6));
     shared.predict(x, told);
     const auto [half_width, novelty] = library.assess<double>(x, 2);
     for (std::size_t k = 0; k < 2; ++k) {
@@ -206,9 +207,15 @@ class TornReads : public ::testing::Test {
     return torn;
   }
 
+  // Value, and a product with the second derivatives by the numbers of the value.
   static std::vector<double> predicted(Compiled& library, const std::vector<double>& x) {
     std::vector<double> y(3);
+    const auto hold = library.named<void (*)(int)>("kelpie_model_hold");
     library.named<void (*)(const double*, double*)>("kelpie_model_predict")(x.data(), y.data());
+    hold(1);
+    const std::vector<double> bent = library.hessian_vector(x, {1.0, -2.0, 0.5}, {1.0, 2.0, -1.0});
+    hold(0);
+    y.insert(y.end(), bent.begin(), bent.end());
     return y;
   }
 
@@ -262,18 +269,22 @@ TEST(LiveLibrary, IsCalledAsCasadiCallsItsOwnCodeAndFailsWithoutAModel) {
   Compiled library(source_of(model), "kelpie_model", folder);
   ASSERT_TRUE(library);
   const std::vector<double> x{0.3, -0.2, 0.1};
-  std::vector<double> y(3);
+  std::vector<double> y(27);
   const double* argument = x.data();
   double* result = y.data();
   using Call = int (*)(const double**, double**, long long*, double*, int);
   EXPECT_EQ(library.named<Call>("kelpie_model")(&argument, &result, nullptr, nullptr, 0), 1);
   EXPECT_TRUE(std::isnan(y[2]));
   EXPECT_EQ(problem(library), "the file of the block cannot be opened");
+  EXPECT_EQ(library.named<Call>("jac_jac_kelpie_model")(&argument, &result, nullptr, nullptr, 0), 1);
 
   ASSERT_EQ(attach(library, memory), 0);
   publish(memory, model);
   CasadiFunction value(library, "kelpie_model");
   CasadiFunction jacobian(library, "jac_kelpie_model");
+  CasadiFunction bends(library, "jac_jac_kelpie_model");
+  const std::vector<double> hessian = library.hessian<double>(x, 3);
+  const std::vector<double> bent = bends.call(x.data());
   std::vector<double> slopes(9);
   model.predict_with_jacobian(x, y, slopes);
   const std::vector<double> said = value.call(x.data());
@@ -282,6 +293,7 @@ TEST(LiveLibrary, IsCalledAsCasadiCallsItsOwnCodeAndFailsWithoutAModel) {
     EXPECT_NEAR(said[i], y[i], 1e-11 * (1.0 + std::abs(y[i])));
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_NEAR(by_columns[3 * k + i], slopes[3 * i + k], 1e-10 * (1.0 + std::abs(y[i])));
+      EXPECT_EQ(bent[9 * k + i], hessian[9 * i + k]);  // ∂²y_i / ∂x_0 ∂x_k
     }
   }
 }
@@ -381,6 +393,7 @@ TEST(LiveLibrary, NoNumberInADamagedBlockLeadsOutOfIt) {
     const std::vector<double> x{0.1, 0.2, 0.3};
     library.named<void (*)(const double*, double*, double*)>("kelpie_model_predict_with_jacobian")(
         x.data(), y.data(), slopes.data());
+    library.hessian<double>(x, 3);
   }
   EXPECT_GT(refused, 10U);
 }

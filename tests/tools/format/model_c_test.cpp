@@ -128,6 +128,69 @@ TEST(ModelC, HasTheSlopesOfTheModelAtKinks) {
   expect_same(model, inputs, false, folder);
 }
 
+// Among the numbers are members that disagree or are at a limit, and terms beyond their ranges.
+TEST(ModelC, HasTheSecondDerivativesOfItsSlopes) {
+  const TemporaryFolder folder;
+  RandomStream random(13, "bends");
+  format::CodeOptions options;
+  options.hessian = true;
+  for (const char* const terms : {testing::kEveryFunction, "none"}) {
+    ModelShape shape;
+    shape.terms = terms;
+    shape.scaling = terms == std::string("none") ? ScalingKind::diagonal : ScalingKind::full;
+    const TrainedModel model = random_model(random, shape);
+    options.single = false;
+    Compiled compiled(model, options, folder);
+    options.single = true;
+    Compiled single(model, options, folder);
+    ASSERT_TRUE(compiled && single);
+    for (std::vector<double> x : random_inputs(random, 3)) {
+      x[0] += 1e-3;  // beside the kinks at 0
+      x[1] += 2e-3;
+      x[2] -= 3e-3;
+      std::ranges::transform(x, x.begin(), [](double v) { return static_cast<float>(v); });
+      expect_bends_of_slopes(compiled, x, 3, {1e-5, 1e-5, 1e-5});
+      const std::vector<double> exact = compiled.hessian<double>(x, 3);
+      const std::vector<double> rounded = single.hessian<float>(x, 3);
+      double largest = 0.0;
+      for (const double value : exact) {
+        largest = std::max(largest, std::abs(value));
+      }
+      for (std::size_t n = 0; n < exact.size(); ++n) {
+        ASSERT_NEAR(rounded[n], exact[n], 1e-3 * largest);
+      }
+    }
+  }
+}
+
+TEST(ModelC, ItsSecondDerivativesAtKinksAreBetweenThoseOfBothSides) {
+  const TemporaryFolder folder;
+  RandomStream random(14, "bent kinks");
+  ModelShape shape;
+  shape.targets = {"x"};
+  format::CodeOptions options;
+  options.hessian = true;
+  // The second derivative by a of one term, as a share of that at a = 1; all samples are far away.
+  const auto bend = [&](const char* terms, double a) {
+    shape.terms = terms;
+    TrainedModel model = random_model(random, shape);
+    model.axes[0].function.limits = {};
+    model.axes[0].function.term_ranges.clear();
+    model.axes[0].scaling.input.mean = {1e3, 1e3, 1e3};
+    Compiled compiled(model, options, folder);
+    return compiled.hessian<double>({a, 0.5, 0.25}, 1)[0] /
+           compiled.hessian<double>({1.0, 0.5, 0.25}, 1)[0];
+  };
+  EXPECT_EQ(bend("a*|a|", 0.0), 0.0);
+  EXPECT_EQ(bend("a*|a|", -2.0), -1.0);
+  EXPECT_EQ(bend("max(a,0)^2", -1.0), 0.0);
+  EXPECT_EQ(bend("max(a,0)^2", 0.0), 0.25);
+  EXPECT_EQ(bend("max(a,0)^2", 3.0), 1.0);
+  EXPECT_EQ(bend("sqrt(a)", 0.0), 0.0);  // none that is finite
+  EXPECT_EQ(bend("1/a", 0.0), 0.0);
+  EXPECT_DOUBLE_EQ(bend("1/a", 2.0), 0.125);
+}
+
 TEST(ModelC, KeepsNamesAndUnitsWhateverIsInThem) {
   const TemporaryFolder folder;
   RandomStream random(4, "names");
@@ -239,6 +302,17 @@ TEST(ModelC, IsCalledAsCasadiCallsItsOwnCode) {
   EXPECT_EQ(jacobian.shape("_sparsity_in", 1), (Shape{targets, 1, 0}));
   EXPECT_EQ(jacobian.shape("_sparsity_out", 0), (Shape{targets, inputs, targets * inputs}));
 
+  CasadiFunction bends(compiled, "jac_jac_kelpie_model");
+  EXPECT_EQ(bends.count("_n_in"), 3);
+  EXPECT_EQ(bends.count("_n_out"), 2);
+  EXPECT_EQ(bends.name_of("_name_in", 2), "out_jac_y_x");
+  EXPECT_EQ(bends.name_of("_name_out", 0), "jac_jac_y_x_x");
+  EXPECT_EQ(bends.name_of("_name_out", 1), "jac_jac_y_x_out_y");
+  EXPECT_EQ(bends.shape("_sparsity_in", 2), (Shape{targets, inputs, 0}));
+  EXPECT_EQ(bends.shape("_sparsity_out", 0),
+            (Shape{targets * inputs, inputs, targets * inputs * inputs}));
+  EXPECT_EQ(bends.shape("_sparsity_out", 1), (Shape{targets * inputs, targets, 0}));
+
   const std::size_t columns = model.input_names.size();
   const std::size_t rows = model.axes.size();
   std::vector<double> y(rows);
@@ -247,11 +321,17 @@ TEST(ModelC, IsCalledAsCasadiCallsItsOwnCode) {
     model.predict_with_jacobian(x, y, slopes);
     const std::vector<double> said = value.call(x.data());
     const std::vector<double> by_columns = jacobian.call(x.data());
+    const std::vector<double> bent = bends.call(x.data());
+    const std::vector<double> hessian = compiled.hessian<double>(x, rows);
     for (std::size_t i = 0; i < rows; ++i) {
       ASSERT_NEAR(said[i], y[i], 1e-9 * (1.0 + std::abs(y[i])));
       for (std::size_t k = 0; k < columns; ++k) {
         const double slope = slopes[i * columns + k];
         ASSERT_NEAR(by_columns[k * rows + i], slope, 1e-9 * (1.0 + std::abs(slope)));
+        for (std::size_t j = 0; j < columns; ++j) {
+          ASSERT_EQ(bent[k * rows * columns + j * rows + i],
+                    hessian[(i * columns + j) * columns + k]);
+        }
       }
     }
   }
@@ -270,6 +350,7 @@ TEST(ModelC, OfANumberThatIsNoneNothingIsKnown) {
   }
   format::CodeOptions options;
   options.assess = true;
+  options.hessian = true;
   Compiled compiled(model, options, folder);
   ASSERT_TRUE(compiled);
   for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
@@ -280,6 +361,10 @@ TEST(ModelC, OfANumberThatIsNoneNothingIsKnown) {
     EXPECT_TRUE(std::ranges::all_of(y, [](double v) { return std::isnan(v); }));
     EXPECT_TRUE(std::ranges::all_of(jacobian, [](double v) { return std::isnan(v); }));
     EXPECT_EQ(compiled.assess<double>(x, 3).second, (std::vector{1.0, 1.0, 1.0}));
+    const auto is_nan = [](double v) { return std::isnan(v); };
+    EXPECT_TRUE(std::ranges::all_of(compiled.hessian<double>(x, 3), is_nan));
+    const std::vector<double> zeros(3);
+    EXPECT_TRUE(std::ranges::all_of(compiled.hessian_vector(x, zeros, zeros), is_nan));
   }
 }
 
@@ -368,7 +453,8 @@ TEST(ModelC, RefusesWhatIsNoName) {
             "model.json: evaluating the model overflows a double");
 }
 
-// A vehicle's usual terms are multiplied out: of the mathematical library only exp is left.
+// A vehicle's usual terms are multiplied out: of the mathematical library only exp is left. The
+// second derivatives are those of a learned model, and of what the actuators make of commands.
 TEST(ModelC, OfTheSimulatedVehicleNeedsNothingButExp) {
   const TemporaryFolder folder;
   vehicle::Scenario scenario =
@@ -387,12 +473,29 @@ TEST(ModelC, OfTheSimulatedVehicleNeedsNothingButExp) {
       inputs.emplace_back(x.begin(), x.end());
     }
   }
-  const TrainedModel model = learner.trained();
+  TrainedModel model = learner.trained();
   ASSERT_GT(model.terms.size(), 10U);
   const std::string code = format::model_c(model, {});
   EXPECT_FALSE(std::regex_search(code, std::regex("[^_a-z](sqrt|sin|cos|tanh|pow|fabs|log)\\(")));
   expect_same(model, inputs, false, folder);
   expect_same(model, inputs, true, folder);
+
+  model.alignment = {.commands = {data.input_names[3], data.input_names[4]},
+                     .actuators = {{.dead_band = 0.1}, {.astern = 0.7, .lag_s = 0.5}}};
+  format::CodeOptions options;
+  options.hessian = true;
+  Compiled compiled(model, options, folder);
+  ASSERT_TRUE(compiled);
+  alignas(16) std::array<std::byte, 8192> state{};
+  compiled.named<void (*)(void*)>("kelpie_model_actuators_rest")(state.data());
+  const auto step = compiled.named<void (*)(void*, double, double*)>("kelpie_model_actuators_step");
+  for (std::vector<double>& x : inputs) {
+    step(state.data(), 0.5, x.data());
+    for (double& value : x) {
+      value += std::abs(value) < 1e-4 ? 1e-3 : 0.0;  // beside kinks
+    }
+    expect_bends_of_slopes(compiled, x, 3, std::vector<double>(x.size(), 1e-6));
+  }
 }
 
 TEST(ModelC, NamesOfMembersAreNoCode) {

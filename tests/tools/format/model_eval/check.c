@@ -16,7 +16,9 @@
 #define KELPIE_SLOPES 5
 #define KELPIE_STACK 3
 #define KELPIE_ASSESS 1e-9
+#define KELPIE_PAIRS 6
 #include "model_eval.inc"
+#include "model_curve.inc"
 
 /* Two members: the first with one support vector at z = (1, 0), the second of terms alone. */
 static const struct kelpie_axis axes[] = {{0, 2, -10, 10, 0, 1, {1, 0}, {{2, 0}, {1, 0.5}},
@@ -74,7 +76,8 @@ int check(void);
 int check(void)
 {
   const double at_kink[2] = {0, 2}, nowhere[2] = {0, NAN}, vector[2] = {1.5, -1};
-  double y[1], jacobian[2], slope, half_width, novelty;
+  const double one[1] = {1}, ahead[2] = {1, 0};
+  double y[1], jacobian[2], hessian[4], product[2], slope, half_width, novelty;
   /* Terms at the kink: max(-0, -1) * 2 falls to the right, 2^3 / 2, 0, and one that counts 0. */
   if (!(kelpie_term(&tables, 0, at_kink, 0, &slope) == 0 && slope == -2)) return 1;
   if (!(kelpie_term(&tables, 0, at_kink, 1, &slope) == 0 && slope == 0)) return 2;
@@ -101,5 +104,24 @@ int check(void)
   /* Within their ranges the terms are -3, -0.25, 1 and 0, and only the first has a slope. */
   kelpie_evaluate(&within, vector, y, jacobian);
   if (!near(y[0], 0.75 * 5.5 + 0.25 * (-3 - 2.5 + 100))) return 13;
-  return near(jacobian[0], 0.25 * -2) && jacobian[1] == 0 ? 0 : 14;
+  if (!(near(jacobian[0], 0.25 * -2) && jacobian[1] == 0)) return 14;
+  /* At the kink of max(-|x0|, x1 - 3), and of x1^3 / 2 at 2: 3 x1. */
+  if (kelpie_term_curve(&tables, 0, at_kink, 0, 0) != 0) return 15;
+  if (kelpie_term_curve(&tables, 1, at_kink, 1, 1) != 6) return 16;
+  if (!near(kelpie_term_curve(&tables, 2, vector, 0, 0), -0.25 / (1.5 * sqrt(1.5)))) return 17;
+  /* At its support vector the kernel part bends by -2 gamma weight (s + 32 fine) in z, by W' W in x:
+   * {{5, 0.5}, {0.5, 0.25}}. Of the terms in their ranges the first has no bend. */
+  kelpie_hessians(&within, vector, hessian, 0, 0, 0);
+  if (!near(hessian[0], 0.75 * -18 * 5)) return 18;
+  if (!(near(hessian[1], 0.75 * -18 * 0.5) && hessian[2] == hessian[1])) return 19;
+  if (!near(hessian[3], 0.75 * -18 * 0.25)) return 20;
+  kelpie_hessians(&within, vector, 0, ahead, one, product);
+  if (!(product[0] == hessian[0] && product[1] == hessian[1])) return 21;
+  /* g = 4.5 bends by 0.5 of that, the mean too, and d2 = 2 * 4.5 by 2 * 2 * 1.5 (0.5 times that), as
+   * none has a slope; shrunk is g d2 / 38.25. */
+  kelpie_hessians(&disagreeing, vector, hessian, 0, 0, 0);
+  return near(hessian[0], 0.5 * -18 * 5 * (1 - 9 * (38.25 - 40.5) / (38.25 * 38.25) -
+                                           4.5 * 29.25 / (38.25 * 38.25) * 4 / 0.75 * 1.5))
+             ? 0
+             : 22;
 }
