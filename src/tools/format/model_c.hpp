@@ -24,7 +24,7 @@ struct CodeOptions {
   bool single = false;                ///< float instead of double
   bool assess = false;                ///< adds NAME_assess: interval and novelty
   bool hessian = false;               ///< adds NAME_hessian and NAME_hessian_vector
-  bool casadi = false;                ///< adds the functions called by CasADi and acados; hessian, too
+  bool casadi = false;  ///< adds the functions called by CasADi and acados; hessian, too
   std::string source = "model.json";  ///< origin of the model, for the comment at the top
   std::map<std::string, Unit> units;  ///< of columns, by name; missing columns have no unit
   std::optional<LiveBlock> live{};    ///< numbers from a block in place of constant tables

@@ -124,8 +124,8 @@ class Compiled {
   std::unique_ptr<void, int (*)(void*)> library_;
 };
 
-/// That the second derivatives at x are central differences of the Jacobian, `step` of the inputs to
-/// either side; and that the product with a vector is that of these matrices.
+/// That the second derivatives at x are central differences of the Jacobian, `step` of the inputs
+/// to either side; and that the product with a vector is that of these matrices.
 inline void expect_bends_of_slopes(Compiled& compiled, const std::vector<double>& x,
                                    std::size_t targets, const std::vector<double>& step) {
   const std::size_t size = x.size();

@@ -269,14 +269,18 @@ TEST(LiveLibrary, IsCalledAsCasadiCallsItsOwnCodeAndFailsWithoutAModel) {
   Compiled library(source_of(model), "kelpie_model", folder);
   ASSERT_TRUE(library);
   const std::vector<double> x{0.3, -0.2, 0.1};
-  std::vector<double> y(27);
+  std::vector<double> y(3);
+  std::vector<double> none(27);
   const double* argument = x.data();
   double* result = y.data();
   using Call = int (*)(const double**, double**, long long*, double*, int);
   EXPECT_EQ(library.named<Call>("kelpie_model")(&argument, &result, nullptr, nullptr, 0), 1);
   EXPECT_TRUE(std::isnan(y[2]));
   EXPECT_EQ(problem(library), "the file of the block cannot be opened");
-  EXPECT_EQ(library.named<Call>("jac_jac_kelpie_model")(&argument, &result, nullptr, nullptr, 0), 1);
+  result = none.data();
+  EXPECT_EQ(library.named<Call>("jac_jac_kelpie_model")(&argument, &result, nullptr, nullptr, 0),
+            1);
+  EXPECT_TRUE(std::isnan(none[26]));
 
   ASSERT_EQ(attach(library, memory), 0);
   publish(memory, model);
