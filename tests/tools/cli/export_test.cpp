@@ -53,6 +53,7 @@ TEST_F(Export, WritesEveryFileOrNone) {
   testing::expect_refused(run(model + "--fmu a.fmu --float"), "--float: needs --c FILE");
   testing::expect_refused(run(model + "--fmu a.fmu --assess"), "--assess: needs --c FILE");
   testing::expect_refused(run(model + "--fmu a.fmu --casadi"), "--casadi: needs --c FILE");
+  testing::expect_refused(run(model + "--fmu a.fmu --hessian"), "--hessian: needs --c FILE");
   EXPECT_FALSE(exists("a.fmu"));
 
   testing::succeeded(run(model + "--live twin.so"));

@@ -21,6 +21,8 @@
 extern "C" {
 int kelpie_model_attach(const void* memory, unsigned long long bytes);
 void kelpie_model_predict_with_jacobian(const double* x, double* y, double* jacobian);
+void kelpie_model_hessian_vector(const double* x, const double* v, const double* lambda,
+                                 double* product);
 unsigned long long kelpie_model_renew(void);
 void kelpie_model_hold(int on);
 }
@@ -84,7 +86,14 @@ int main(int argc, char** argv) {
     const std::size_t next = words[3] + 1;  // written by this thread alone
     block.publish(first.input_names, models[next % kModels].axes, {});
   };
-  publish();
+  const std::vector<double> ones(std::max(x.size(), targets), 1.0);
+  std::array<Answer, kModels> products;
+  products.fill(Answer(x.size()));
+  for (std::size_t k = 0; k < kModels; ++k) {
+    publish();
+    kelpie_model_hessian_vector(x.data(), ones.data(), ones.data(),
+                                products[words[3] % kModels].data());
+  }
   std::atomic<bool> going{true};
   std::atomic<long> calls{0};
   std::atomic<long> renewals{0};
@@ -101,10 +110,13 @@ int main(int argc, char** argv) {
       Answer said(expected[0].size());
       kelpie_model_predict_with_jacobian(x.data(), said.data(), said.data() + targets);
       kelpie_model_hold(1);
+      Answer product(x.size());
+      kelpie_model_hessian_vector(x.data(), ones.data(), ones.data(), product.data());
       const unsigned long long number = kelpie_model_renew();
       kelpie_model_hold(0);
       ++calls;
-      wrong += number > 1 && !same(said, expected[number % kModels]) ? 1 : 0;
+      const std::size_t model = number % kModels;
+      wrong += number > 1 && !(same(said, expected[model]) && same(product, products[model]));
       renewals += number != last ? 1 : 0;
       last = number;
       if (hertz > 0.0) {
