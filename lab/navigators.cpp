@@ -3,13 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
 
-#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "study/open_loop_study.hpp"
 
 namespace kelpie::lab {
 namespace {
+
+constexpr double kGravity = 9.81;  // m/s²
+constexpr double kTilt = 0.1 * std::numbers::pi / 180.0;  // rad, of an IMU
 
 class FilterNavigator final : public Navigator {
  public:
@@ -19,11 +26,15 @@ class FilterNavigator final : public Navigator {
   std::unique_ptr<Navigator> clone() const override {
     return std::make_unique<FilterNavigator>(*this);
   }
-  void update(std::span<const double> x, double t) override {
-    reckoning_.update(x, t);
+  void update(const SensedRow& row) override {
+    reckoning_.update(row.x, row.time_s);
     if (reckoning_.silent_s() == 0.0) {
       heading_ = reckoning_.heading();
     }
+  }
+  void use(const OpenLoop& model) override {
+    reckoning_.use(model);
+    noise_ = model.noise;
   }
   double velocity(std::size_t state) const override { return reckoning_.velocity(state); }
   std::optional<std::array<double, 4>> position_covariance() const override {
@@ -41,6 +52,9 @@ class FilterNavigator final : public Navigator {
                       reckoning_.covariance(1, 1) + noise_[1] * noise_[1]};
   }
   double step() const override { return reckoning_.step(); }
+  std::optional<bool> believes() const override {
+    return reckoning_.fault(0) == VelocityFault::none && reckoning_.fault(1) == VelocityFault::none;
+  }
 
  private:
   DeadReckoning reckoning_;
@@ -56,7 +70,8 @@ class RolloutNavigator final : public Navigator {
   std::unique_ptr<Navigator> clone() const override {
     return std::make_unique<RolloutNavigator>(*this);
   }
-  void update(std::span<const double> x, double t) override {
+  void update(const SensedRow& row) override {
+    const std::span<const double> x = row.x;
     if (std::isfinite(x[0])) {
       rollout_.start(x);
       silent_ = false;
@@ -64,10 +79,14 @@ class RolloutNavigator final : public Navigator {
       if (!silent_) {
         begin(x);
       }
-      rollout_.advance(x, t - time_s_);
+      rollout_.advance(x, row.time_s - time_s_);
     }
     last_.assign(x.begin(), x.end());
-    time_s_ = t;
+    time_s_ = row.time_s;
+  }
+  void use(const OpenLoop& model) override {
+    loop_ = model;
+    rollout_ = Rollout(loop_, {});
   }
   double velocity(std::size_t state) const override { return rollout_.velocity(state); }
 
@@ -89,16 +108,48 @@ class RolloutNavigator final : public Navigator {
   double time_s_ = 0.0;
 };
 
-OpenLoop learned_loop(const log::Dataset& data, const study::Split& split, TrainedModel& trained) {
-  DynamicsModel model(data.input_names, data.target_names,
-                      ModelSettings::from_preset("default", data.target_names.size()));
-  for (const std::size_t row : split.training) {
-    model.update(data.input(row), data.target(row), data.times_s[row]);
+// Accelerations are those in the body, without the turning of the frame: of surge and sway alone.
+class ImuNavigator final : public Navigator {
+ public:
+  std::unique_ptr<Navigator> clone() const override {
+    return std::make_unique<ImuNavigator>(*this);
   }
-  model.learn_held_back();
-  trained = model.trained();
-  return open_loop(trained, OpenLoopPart::steady);
-}
+  void update(const SensedRow& row) override {
+    const bool silent = !std::isfinite(row.x[0]);
+    if (silent && !silent_) {
+      draw_tilt(row.time_s);
+    }
+    silent_ = silent;
+    for (std::size_t axis = 0; axis < velocity_.size(); ++axis) {
+      const double now = row.accelerations[axis] + gravity_[axis];
+      velocity_[axis] = silent
+                            ? velocity_[axis] + 0.5 * (before_[axis] + now) * (row.time_s - time_s_)
+                            : row.x[axis];
+      before_[axis] = now;
+    }
+    yaw_rate_ = row.x[2];
+    time_s_ = row.time_s;
+  }
+  double velocity(std::size_t state) const override {
+    return state < velocity_.size() ? velocity_[state] : yaw_rate_;
+  }
+
+ private:
+  void draw_tilt(double time_s) {
+    RandomStream random(static_cast<std::uint64_t>(std::llround(1000.0 * time_s)), "tilt");
+    for (std::size_t axis = 0; axis < gravity_.size(); ++axis) {
+      gravity_[axis] = kGravity * kTilt * random.normal();
+      before_[axis] += gravity_[axis];
+    }
+  }
+
+  std::array<double, 2> velocity_{};
+  std::array<double, 2> before_{};
+  std::array<double, 2> gravity_{};
+  double yaw_rate_ = 0.0;
+  double time_s_ = 0.0;
+  bool silent_ = false;
+};
 
 // What the identified model's errors are not told to last, and no practice: a constant current
 // explains what there is.
@@ -112,28 +163,65 @@ DeadReckoningSettings constant_current(const DeadReckoningSettings& like) {
 
 }  // namespace
 
-std::vector<NamedNavigator> make_navigators(const log::Dataset& data, const study::Split& split,
-                                            const DeadReckoningSettings& settings) {
-  TrainedModel trained;
-  const OpenLoop loop = learned_loop(data, split, trained);
-  std::vector<NamedNavigator> all;
-  all.push_back({"kelpie", std::make_unique<FilterNavigator>(loop, settings)});
-  for (const study::OpenLoopContender& one :
-       study::open_loop_contenders(trained, loop, data, split)) {
+NavigatorSet::NavigatorSet(const log::Dataset& data, const DeadReckoningSettings& settings)
+    : data_(data),
+      settings_(settings),
+      model_(data.input_names, data.target_names,
+             ModelSettings::from_preset("default", data.target_names.size())) {}
+
+void NavigatorSet::learn(std::size_t row) {
+  model_.update(data_.input(row), data_.target(row), data_.times_s[row]);
+  rows_.push_back(row);
+}
+
+bool NavigatorSet::try_to_renew() {
+  if (!model_.ready()) {
+    return false;
+  }
+  try {
+    renew();
+  } catch (const InputError&) {
+    return false;  // too few samples for the equations
+  }
+  return true;
+}
+
+void NavigatorSet::renew() {
+  const TrainedModel trained = model_.trained();
+  const OpenLoop loop = open_loop(trained, OpenLoopPart::steady);
+  const bool first = navigators_.empty();
+  std::size_t place = 0;
+  const auto put = [&](std::string name, const OpenLoop& model, auto make) {
+    if (first) {
+      navigators_.push_back({std::move(name), make(model)});
+    } else {
+      navigators_[place++].navigator->use(model);
+    }
+  };
+  const auto filter = [this](const OpenLoop& model) {
+    return std::make_unique<FilterNavigator>(model, settings_);
+  };
+  const auto constant_filter = [this](const OpenLoop& model) {
+    return std::make_unique<FilterNavigator>(model, constant_current(settings_));
+  };
+  const auto rollout = [](const OpenLoop& model) {
+    return std::make_unique<RolloutNavigator>(model);
+  };
+  put("kelpie", loop, filter);
+  for (const study::OpenLoopContender& one : study::open_loop_contenders(
+           trained, loop, data_, {.label = {}, .training = rows_, .held_out = {}})) {
     if (one.name == "recursive least squares") {
       OpenLoop identified = one.loop;
       identified.noise = loop.noise;
       identified.error = loop.error;
       std::ranges::fill(identified.error_time_s, 0.0);
-      all.push_back({"constant-current Kalman filter",
-                     std::make_unique<FilterNavigator>(identified, constant_current(settings))});
+      put("constant-current Kalman filter", identified, constant_filter);
     }
     if (one.name == "kelpie" || !one.name.starts_with("kelpie")) {
-      all.push_back({one.name == "kelpie" ? "kelpie, rollout alone" : one.name,
-                     std::make_unique<RolloutNavigator>(one.loop)});
+      put(one.name == "kelpie" ? "kelpie, rollout alone" : one.name, one.loop, rollout);
     }
   }
-  return all;
+  put("IMU alone", loop, [](const OpenLoop&) { return std::make_unique<ImuNavigator>(); });
 }
 
 }  // namespace kelpie::lab

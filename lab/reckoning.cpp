@@ -7,6 +7,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
@@ -21,6 +23,8 @@ namespace {
 constexpr double kStill = 0.1;          // m, less than which a vehicle hasn't gone anywhere
 constexpr double kReturnS = 2.0;        // of velocities after an outage, for the largest step
 constexpr double kHeardS = 2.0;         // of velocities after a cut of the log, before an outage
+constexpr double kFirstS = 300.0;       // of a drive, before outages
+constexpr double kRenewedS = 10.0;        // between models, as `kelpie live`
 constexpr double kChiSquare90 = 4.605;  // two degrees of freedom
 
 struct Outage {
@@ -29,11 +33,11 @@ struct Outage {
   std::size_t length = 0;  // index into the plan's
 };
 
-std::vector<Outage> plan_outages(const log::Dataset& data, const study::Split& split,
+std::vector<Outage> plan_outages(const log::Dataset& data, std::span<const std::size_t> rows,
                                  const ReckoningPlan& plan) {
   const std::vector<std::size_t> states{0, 1, 2};
   std::vector<Outage> outages;
-  for (study::Stretch stretch : study::unbroken_stretches(data, split.held_out, states)) {
+  for (study::Stretch stretch : study::unbroken_stretches(data, rows, states)) {
     stretch.begin = study::row_after(data, stretch, stretch.begin, kHeardS);
     for (std::size_t k = 0; k < plan.outages_s.size(); ++k) {
       const double seconds = plan.outages_s[k];
@@ -48,6 +52,10 @@ std::vector<Outage> plan_outages(const log::Dataset& data, const study::Split& s
   }
   std::ranges::sort(outages, {}, &Outage::begin);
   return outages;
+}
+
+SensedRow sensed(const log::Dataset& data, std::size_t row) {
+  return {data.input(row), data.target(row), data.times_s[row]};
 }
 
 std::vector<NamedNavigator> copies(const std::vector<NamedNavigator>& navigators) {
@@ -70,16 +78,31 @@ double largest_step(Navigator& navigator, const log::Dataset& data, std::size_t 
   const double until_s = data.times_s[row] + kReturnS;
   while (++row < data.rows() && data.times_s[row] <= until_s &&
          data.configurations[row] == data.configurations[row - 1]) {
-    navigator.update(data.input(row), data.times_s[row]);
+    navigator.update(sensed(data, row));
     largest = std::max(largest, navigator.step());
   }
   return largest;
 }
 
+// The inputs of a row in an outage.
+std::vector<double> lost(const log::Dataset& data, const Outage& outage, std::size_t row, Loss loss,
+                         bool yaw_rate) {
+  const std::span<const double> now = data.input(row);
+  std::vector<double> x(now.begin(), now.end());
+  for (std::size_t i = 0; i < (yaw_rate ? 2U : 3U); ++i) {
+    x[i] = loss == Loss::silent  ? std::numeric_limits<double>::quiet_NaN()
+           : loss == Loss::zeros ? 0.0
+                                 : data.input(outage.begin)[i];
+  }
+  return x;
+}
+
 // One navigator, a copy of which goes through an outage.
 void go_through(const Navigator& before, const log::Dataset& data, const Outage& outage,
-                bool yaw_rate, OutageScore& score) {
+                const ReckoningPlan& plan, OutageScore& score) {
   const std::unique_ptr<Navigator> navigator = before.clone();
+  const bool disguised = plan.loss != Loss::silent && before.believes().has_value();
+  double found_s = std::numeric_limits<double>::infinity();
   study::Pose truth;
   study::Pose reckoned;
   double distance = 0.0;
@@ -87,16 +110,19 @@ void go_through(const Navigator& before, const log::Dataset& data, const Outage&
     const std::span<const double> now = data.input(row);
     const std::span<const double> next = data.input(row + 1);
     const double dt_s = data.times_s[row + 1] - data.times_s[row];
-    std::vector<double> x(next.begin(), next.end());
-    std::fill_n(x.begin(), yaw_rate ? 2 : 3, std::numeric_limits<double>::quiet_NaN());
+    const std::vector<double> x =
+        lost(data, outage, row + 1, disguised ? plan.loss : Loss::silent, plan.yaw_rate);
     const double u = navigator->velocity(0);
     const double v = navigator->velocity(1);
     const double r = navigator->velocity(2);
-    navigator->update(x, data.times_s[row + 1]);
+    navigator->update({x, data.target(row + 1), data.times_s[row + 1]});
+    if (disguised && !*navigator->believes()) {
+      found_s = std::min(found_s, data.times_s[row + 1] - data.times_s[outage.begin]);
+    }
     const auto mean = [&](std::size_t state) { return 0.5 * (now[state] + next[state]); };
     truth.advance(mean(0), mean(1), mean(2), dt_s);
     reckoned.advance(0.5 * (u + navigator->velocity(0)), 0.5 * (v + navigator->velocity(1)),
-                     yaw_rate ? mean(2) : 0.5 * (r + navigator->velocity(2)), dt_s);
+                     plan.yaw_rate ? mean(2) : 0.5 * (r + navigator->velocity(2)), dt_s);
     distance += std::hypot(mean(0), mean(1)) * dt_s;
   }
   if (distance <= kStill) {
@@ -105,6 +131,9 @@ void go_through(const Navigator& before, const log::Dataset& data, const Outage&
   const double x = reckoned.x - truth.x;
   const double y = reckoned.y - truth.y;
   score.errors.push_back(std::hypot(x, y) / distance);
+  if (disguised) {
+    score.found_s.push_back(found_s);
+  }
   const auto p = navigator->position_covariance();
   const auto q = navigator->velocity_covariance();
   if (p && q) {
@@ -116,6 +145,65 @@ void go_through(const Navigator& before, const log::Dataset& data, const Outage&
     score.steps.push_back(largest_step(*navigator, data, outage.end));
   }
 }
+
+// All navigators on their way along a log, and their scores.
+class OutageStudy {
+ public:
+  OutageStudy(const log::Dataset& data, std::span<const std::size_t> rows, std::string label,
+              const ReckoningPlan& plan)
+      : data_(data), plan_(plan), outages_(plan_outages(data, rows, plan)) {
+    result_ = {.source = data.source,
+               .split = std::move(label),
+               .yaw_rate = plan.yaw_rate,
+               .held_out = rows.size(),
+               .scores = {}};
+  }
+
+  // The next row, and copies of the navigators through the outages that begin there.
+  void take(std::size_t row, const std::vector<NamedNavigator>& navigators) {
+    for (const NamedNavigator& one : navigators) {
+      one.navigator->update(sensed(data_, row));
+      NavigatorScore& score = score_of(one);
+      ++score.measured;
+      score.disbelieved += score.checks && !*one.navigator->believes() ? 1 : 0;
+    }
+    for (; next_ < outages_.size() && outages_[next_].begin <= row; ++next_) {
+      for (std::size_t i = 0; outages_[next_].begin == row && i < navigators.size(); ++i) {
+        go_through(*navigators[i].navigator, data_, outages_[next_], plan_,
+                   result_.scores[i].outages[outages_[next_].length]);
+      }
+    }
+  }
+
+  bool goes_on(std::size_t row) const {
+    return next_ < outages_.size() &&
+           (row % 100 != 0 ||
+            plan_.keep_going(static_cast<double>(row) / static_cast<double>(data_.rows())));
+  }
+
+  const ReckoningResult& result() const { return result_; }
+
+ private:
+  NavigatorScore& score_of(const NamedNavigator& one) {
+    const auto found = std::ranges::find(result_.scores, one.name, &NavigatorScore::name);
+    if (found != result_.scores.end()) {
+      return *found;
+    }
+    NavigatorScore& score = result_.scores.emplace_back();
+    score.name = one.name;
+    score.checks = one.navigator->believes().has_value();
+    for (const double seconds : plan_.outages_s) {
+      score.outages.push_back({.seconds = seconds, .errors = {}, .steps = {}, .found_s = {}});
+    }
+    return score;
+  }
+
+  const log::Dataset& data_;
+  const ReckoningPlan& plan_;
+  std::vector<Outage> outages_;
+  std::size_t next_ = 0;
+  ReckoningResult result_;
+};
 
 double error_quantile(const OutageScore& score, double share) {
   std::vector<double> errors = score.errors;
@@ -141,6 +229,11 @@ double velocity_inside_share(const OutageScore& score) {
 
 double largest_of(const std::vector<double>& steps) {
   return steps.empty() ? std::numeric_limits<double>::quiet_NaN() : std::ranges::max(steps);
+}
+
+double found_quantile(const OutageScore& score, double share) {
+  std::vector<double> times = score.found_s;
+  return times.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(times, share);
 }
 
 void add_shares(chart::TextTable& table, const NavigatorScore& navigator, const std::string& name,
@@ -176,6 +269,12 @@ chart::TextTable result_table(const ReckoningResult& result) {
       add_shares(table, navigator, "largest step on return",
                  [](const OutageScore& score) { return largest_of(score.steps); });
     }
+    if (navigator.outages.front().found_s.size() > 0) {
+      add_shares(table, navigator, "loss found, median s",
+                 [](const OutageScore& score) { return found_quantile(score, 0.5); });
+      add_shares(table, navigator, "longest s",
+                 [](const OutageScore& score) { return found_quantile(score, 1.0); });
+    }
   }
   return table;
 }
@@ -188,6 +287,7 @@ file::Json outage_json(const OutageScore& score) {
           {"inside_90", file::number(inside_share(score))},
           {"velocity_inside_90", file::number(velocity_inside_share(score))},
           {"largest_step", file::number(largest_of(score.steps))},
+          {"found_s", file::numbers(score.found_s)},
           {"errors", file::numbers(score.errors)}};
 }
 
@@ -199,6 +299,8 @@ file::Json result_json(const ReckoningResult& result) {
           {"yaw_rate_measured", result.yaw_rate},
           {"navigators", file::list(result.scores, [](const NavigatorScore& navigator) {
              return file::Json{{"name", navigator.name},
+                               {"measured_rows", navigator.measured},
+                               {"disbelieved_rows", navigator.disbelieved},
                                {"outages", file::list(navigator.outages, outage_json)}};
            })}};
 }
@@ -216,46 +318,50 @@ void ReckoningResult::join(const ReckoningResult& other) {
       mine.inside += theirs.inside;
       mine.velocity_inside += theirs.velocity_inside;
       mine.steps.insert(mine.steps.end(), theirs.steps.begin(), theirs.steps.end());
+      mine.found_s.insert(mine.found_s.end(), theirs.found_s.begin(), theirs.found_s.end());
     }
+    scores[i].measured += other.scores[i].measured;
+    scores[i].disbelieved += other.scores[i].disbelieved;
   }
 }
 
 ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& split,
                                   const ReckoningPlan& plan) {
-  std::vector<NamedNavigator> navigators = make_navigators(data, split, plan.settings);
-  const std::vector<NamedNavigator> fresh = copies(navigators);
-  const std::vector<Outage> outages = plan_outages(data, split, plan);
-  ReckoningResult result{.source = data.source,
-                         .split = split.label,
-                         .yaw_rate = plan.yaw_rate,
-                         .held_out = split.held_out.size(),
-                         .scores = {}};
-  for (const NamedNavigator& one : navigators) {
-    NavigatorScore& score = result.scores.emplace_back(NavigatorScore{one.name, {}});
-    for (const double seconds : plan.outages_s) {
-      score.outages.push_back({.seconds = seconds, .errors = {}, .steps = {}});
-    }
+  NavigatorSet set(data, plan.settings);
+  for (const std::size_t row : split.training) {
+    set.learn(row);
   }
-  auto next = outages.begin();
-  for (std::size_t row = 0; row < data.rows() && next != outages.end(); ++row) {
+  set.learn_held_back();
+  set.renew();
+  const std::vector<NamedNavigator> fresh = copies(set.navigators());
+  OutageStudy study(data, split.held_out, split.label, plan);
+  for (std::size_t row = 0; row < data.rows() && study.goes_on(row); ++row) {
     if (row > 0 && data.configurations[row] != data.configurations[row - 1]) {
-      navigators = copies(fresh);  // another drive
+      set.navigators() = copies(fresh);  // another drive
     }
-    for (const NamedNavigator& one : navigators) {
-      one.navigator->update(data.input(row), data.times_s[row]);
-    }
-    for (; next != outages.end() && next->begin == row; ++next) {
-      for (std::size_t i = 0; i < navigators.size(); ++i) {
-        go_through(*navigators[i].navigator, data, *next, plan.yaw_rate,
-                   result.scores[i].outages[next->length]);
-      }
-    }
-    if (row % 100 == 0 &&
-        !plan.keep_going(static_cast<double>(row) / static_cast<double>(data.rows()))) {
-      break;
+    study.take(row, set.navigators());
+  }
+  return study.result();
+}
+
+ReckoningResult measure_live_reckoning(const log::Dataset& data, const ReckoningPlan& plan) {
+  std::vector<std::size_t> rows(data.rows());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::erase_if(rows, [&](std::size_t row) {
+    return data.times_s[row] < data.times_s.front() + kFirstS;
+  });
+  NavigatorSet set(data, plan.settings);
+  OutageStudy study(data, rows, "learned while driving", plan);
+  double renewed_s = data.times_s.front();
+  for (std::size_t row = 0; row < data.rows() && study.goes_on(row); ++row) {
+    study.take(row, set.navigators());
+    set.learn(row);
+    if (data.times_s[row] >= renewed_s + kRenewedS) {
+      set.try_to_renew();
+      renewed_s = data.times_s[row];
     }
   }
-  return result;
+  return study.result();
 }
 
 std::string reckoning_table(const std::vector<ReckoningResult>& results) {

@@ -12,10 +12,19 @@
 
 namespace kelpie::lab {
 
-/// The outages of a study of dead reckoning.
+/// What a velocity log says in an outage.
+enum class Loss {
+  silent,  ///< nothing
+  zeros,   ///< exact zeros
+  frozen,  ///< the last velocity
+};
+
+/// The outages of a study of dead reckoning. Navigators without checks of their own hear nothing in
+/// any outage.
 struct ReckoningPlan {
   std::vector<double> outages_s{10.0, 30.0, 60.0, 120.0};
   bool yaw_rate = true;  ///< still measured in an outage
+  Loss loss = Loss::silent;
   DeadReckoningSettings settings{};
   /// Called now and then with the finished share; false stops the work.
   std::function<bool(double)> keep_going = [](double) { return true; };
@@ -29,12 +38,16 @@ struct OutageScore {
   std::size_t inside = 0;           ///< outages that ended inside the 90 % ellipse
   std::size_t velocity_inside = 0;  ///< of `told`: within the 90 % ellipse of surge and sway
   std::vector<double> steps;  ///< largest step of each outage's return, in standard deviations
+  std::vector<double> found_s;  ///< time until each loss in disguise was recognised; infinite: never
 };
 
 /// A navigator and its scores.
 struct NavigatorScore {
   std::string name;
   std::vector<OutageScore> outages;
+  bool checks = false;         ///< Navigator::believes()
+  std::size_t measured = 0;    ///< rows of the whole log with a measured velocity
+  std::size_t disbelieved = 0; ///< of `measured`
 };
 
 /// The outages of a log.
@@ -43,7 +56,7 @@ struct ReckoningResult {
   std::string split;
   bool simulated = false;
   bool yaw_rate = true;
-  std::size_t held_out = 0;  ///< rows
+  std::size_t held_out = 0;  ///< rows in which outages may lie
   std::vector<NavigatorScore> scores;
 
   /// Adds the outages of another log of the same kind.
@@ -57,6 +70,11 @@ struct ReckoningResult {
 /// than 0.1 m of travel don't count. Requires inputs u, v, r first.
 ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& split,
                                   const ReckoningPlan& plan);
+
+/// As `kelpie live` does: every navigator follows the log from the first row on, all learn a row
+/// after the row has passed, and go on with the models of all rows so far every 10 s. Outages lie
+/// anywhere after the first five minutes.
+ReckoningResult measure_live_reckoning(const log::Dataset& data, const ReckoningPlan& plan);
 
 /// A table per result, for a terminal.
 std::string reckoning_table(const std::vector<ReckoningResult>& results);

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@ struct ReckoningArguments {
   std::size_t seeds = 3;
   double current = 0.1;
   bool no_simulation = false;
+  bool live = false;
   ReckoningPlan plan;
   std::string out = "out/dead-reckoning";
 };
@@ -45,7 +47,8 @@ ReckoningResult recorded(const ReckoningArguments& options) {
   require_planar(data);
   const study::LearnPlan plan = study::plan_learning(
       std::move(data), split, ModelSettings::from_preset("default", 3), "auto");
-  return measure_reckoning(plan.data, plan.split, options.plan);
+  return options.live ? measure_live_reckoning(plan.data, options.plan)
+                      : measure_reckoning(plan.data, plan.split, options.plan);
 }
 
 // The scenario's vehicle in a current from anywhere; 0: in calm water.
@@ -146,6 +149,12 @@ void add_reckoning(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command->add_flag("--live", options->live,
+                    "the log is learned while outages pass, which lie anywhere after five minutes");
+  const std::map<std::string, Loss> losses{
+      {"silent", Loss::silent}, {"zeros", Loss::zeros}, {"frozen", Loss::frozen}};
+  command->add_option("--loss", options->plan.loss, "what the velocity log says in an outage")
+      ->transform(CLI::CheckedTransformer(losses));
   command->add_flag_callback(
       "--no-yaw-rate", [options = options] { options->plan.yaw_rate = false; },
       "the yaw rate falls silent, too");
