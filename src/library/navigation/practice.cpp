@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/quantile.hpp"
@@ -137,6 +138,21 @@ void Practice::take_rates(std::span<const double> x) {
   }
 }
 
+// The largest of so few errors that conformal prediction promises less than nine in ten is taken no
+// smaller than the bound of Gaussian errors in the plane, whose variance these errors tell: the
+// quantile of Fisher's F with 2 and 2n degrees of freedom is n (10^(1/n) - 1) (Hotelling 1931).
+double Practice::bound_of(const RecentValues& sizes) const {
+  std::array<double, kPractice.outages> recent{};
+  const std::span<double> values = sizes.copy_to(recent);
+  double bound = conformal_bound(values, kCoverage);
+  const auto n = static_cast<double>(values.size());
+  if (n < kCoverage / (1.0 - kCoverage)) {
+    const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+    bound = std::max(bound, std::sqrt(squares * (std::pow(10.0, 1.0 / n) - 1.0)));
+  }
+  return bound / std::sqrt(factor_);
+}
+
 double Practice::factor_at(const Sizes& sizes, double age_s) const {
   double before_age_s = 0.0;
   double before = 1.0;
@@ -144,8 +160,7 @@ double Practice::factor_at(const Sizes& sizes, double age_s) const {
     if (sizes[i].size() < kPractice.least) {
       continue;
     }
-    std::array<double, kPractice.outages> recent{};
-    const double bound = conformal_bound(sizes[i].copy_to(recent), kCoverage);
+    const double bound = bound_of(sizes[i]);
     const double age = age_to_score(i);
     if (age_s <= age) {
       const double share = before_age_s > 0.0
@@ -178,7 +193,7 @@ void Practice::judge(const VelocityFilter& teacher, std::span<const double> x) {
     return;
   }
   const double edge = ninety_percent(values);
-  sizes_[next_].add(std::sqrt(std::max(square, 0.0) / edge));
+  sizes_[next_].add(std::sqrt(std::max(square, 0.0) / edge * factor_));
   judge_velocities(x);
   if (next_ == 1) {
     ++judged_;
@@ -199,7 +214,7 @@ void Practice::judge_velocities(std::span<const double> x) {
   }
   const double square = off.dot(VelocityFilter::Vector(expected.ldlt().solve(off)));
   if (std::isfinite(square)) {
-    speeds_[next_].add(std::sqrt(std::max(square, 0.0) / ninety_percent(values)));
+    speeds_[next_].add(std::sqrt(std::max(square, 0.0) / ninety_percent(values) * factor_));
   }
 }
 

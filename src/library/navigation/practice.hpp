@@ -56,6 +56,7 @@ class Practice {
       Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1, 0, VelocityFilter::kMostVelocities, 1>;
 
   double age_to_score(std::size_t i) const;
+  double bound_of(const RecentValues& sizes) const;
   double factor_at(const Sizes& sizes, double age_s) const;
   Eigen::Vector2d in_world(const VelocityFilter& teacher, std::span<const double> x) const;
   void begin(const VelocityFilter& teacher, std::span<const double> x);
@@ -76,8 +77,9 @@ class Practice {
   std::size_t next_ = 0;                              ///< the next age to score
   int begun_ = 0;                                     ///< outages
   double heard_s_ = 0.0;                              ///< age at the last measured velocities
-  Sizes sizes_;                                       ///< of errors, 1: on the 90 % ellipse, by age
-  Sizes speeds_;                                      ///< the same of velocities
+  /// Of errors, by age; 1: on the 90 % ellipse of a noise factor of 1.
+  Sizes sizes_;
+  Sizes speeds_;  ///< the same of velocities
   double factor_ = 1.0;
   int judged_ = 0;
   double error_ = 0.0;

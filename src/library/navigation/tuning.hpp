@@ -26,7 +26,7 @@ inline constexpr struct NavigationTuning {
     double gap = 0.25;           ///< of an outage: longest step with known commands; by hand
     double early = 0.25;         ///< of an outage: age at which it is scored, too; by hand
     double longer = 3.0;         ///< outages, of which one in `every` is so long; by hand
-    int every = 4;               ///< outages; by hand
+    int every = 2;               ///< outages; by hand
     std::size_t outages = 24;    ///< that count, as stretches do in rollouts (method/open_loop.md)
     std::size_t least = 3;       ///< outages of an age, before they widen the ellipse; by hand
     double least_factor = 0.01;  ///< of the noise factor; by hand
