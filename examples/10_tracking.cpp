@@ -21,11 +21,6 @@ namespace {
 
 constexpr double kMost = 12.0;  // rev/s
 
-// The vehicle answers a starboard command as if it were smaller.
-double weakened(double n, bool damaged) {
-  return damaged ? n * std::sqrt(0.5) : n;
-}
-
 // Commands by the nominal thrust 0.01 n|n|.
 std::array<double, 2> nominal_commands(const Eigen::Vector2d& a) {
   const auto speed = [](double thrust) {
@@ -82,9 +77,10 @@ std::array<double, 2> follow(bool with_model) {
           model_commands(model, vehicle.inputs(n[0], n[1]), rate + 1.5 * off + sum, known);
       n = known ? learned : n;
     }
-    const std::array<double, 4> driven = vehicle.inputs(n[0], weakened(n[1], damaged));
+    const double starboard = ToyVehicle::weakened(n[1], damaged ? 0.5 : 1.0);
+    const std::array<double, 4> driven = vehicle.inputs(n[0], starboard);
     model.update(vehicle.inputs(n[0], n[1]), vehicle.measure(driven), vehicle.t());
-    vehicle.drive(n[0], weakened(n[1], damaged));
+    vehicle.drive(n[0], starboard);
     if (i >= 1000) {
       squares[damaged ? 1 : 0] += off.x() * off.x() / 1000.0;
     }

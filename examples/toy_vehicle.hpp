@@ -36,6 +36,9 @@ class ToyVehicle {
     t_ += kStepS;
   }
 
+  /// The command by which a thruster gives a share of the thrust of n: a damaged thruster's.
+  static double weakened(double n, double share) { return n * std::sqrt(share); }
+
   /// Commands (n1, n2) at a time of a pilot who slowly tries all combinations.
   static std::array<double, 2> pilot(double t) {
     return {6.0 * std::sin(0.11 * t) + 3.0 * std::sin(0.37 * t),
