@@ -352,6 +352,70 @@ kelpie_status kelpie_authority_allocate(const kelpie_authority* authority, const
                                         size_t targets, double* commands, size_t count,
                                         double* missing);
 
+/** Adds a measured heading [rad] with its standard deviation [rad], with the sign of the yaw rate.
+ *  Without one, the heading starts at 0; the first is taken as it is, and current and position turn
+ *  with it. KELPIE_BAD_INPUT on an estimator that isn't planar, a heading that isn't finite, and a
+ *  deviation <= 0. */
+kelpie_status kelpie_reckoning_measured_heading(kelpie_reckoning* reckoning, double heading,
+                                                double deviation);
+
+/** The heading [rad]; 0 where the estimator isn't planar. Requires an estimator. */
+double kelpie_reckoning_heading(const kelpie_reckoning* reckoning);
+
+/** The current [m/s] of the water along surge and sway at heading 0: room for 2 values; 0 where the
+ *  estimator isn't planar. */
+kelpie_status kelpie_reckoning_current(const kelpie_reckoning* reckoning, double* current);
+
+/** The way [m] since the start of an outage along surge and sway at heading 0: room for 2 values; 0
+ *  while velocities are measured, and where the estimator isn't planar. `covariance`: null, or room
+ *  for the 2 · 2 values [m²] of the position's error, row-major. */
+kelpie_status kelpie_reckoning_drift(const kelpie_reckoning* reckoning, double* position,
+                                     double* covariance);
+
+/** The largest change of a velocity by the last sample's measurement, in standard deviations
+ *  before. Requires an estimator. */
+double kelpie_reckoning_step(const kelpie_reckoning* reckoning);
+
+/** The factor on the variance of the model's errors one step ahead, of the practised outages.
+ *  Requires an estimator. */
+double kelpie_reckoning_noise_factor(const kelpie_reckoning* reckoning);
+
+/** How commands go from one sample to the next. */
+typedef enum kelpie_command_path {
+  KELPIE_COMMANDS_HELD = 0,  /**< constant, then a step */
+  KELPIE_COMMANDS_LINEAR = 1 /**< a straight line, as from kelpie_reckoning_create() on */
+} kelpie_command_path;
+
+/** After kelpie_reckoning_use(), where the model has its commands in other units: the last sample
+ *  had the commands of `x` (NaN: unknown; velocities are not looked at), and commands go on as
+ *  `path`, a kelpie_command_path, says. KELPIE_BAD_INPUT on another path, and on a wrong number of
+ *  inputs. Allocates nothing. */
+kelpie_status kelpie_reckoning_restate(kelpie_reckoning* reckoning, const double* x, size_t inputs,
+                                       int32_t path);
+
+/** What a thruster does to an axis at rest, in the target's unit: an entry of the effectiveness
+ *  matrix, with the half widths of 90 % intervals. */
+typedef struct kelpie_thruster_effect {
+  double ahead;          /**< acceleration at full ahead, the `most` of the thruster */
+  double astern;         /**< at full astern, the `least` */
+  double ahead_width;    /**< half width of the interval around `ahead` */
+  double astern_width;   /**< and around `astern` */
+  double nominal_ahead;  /**< before any change of the vehicle */
+  double nominal_astern; /**< the same */
+  double share;          /**< of the thruster's nominal thrust, over all axes; 0: dead */
+} kelpie_thruster_effect;
+
+/** The effect of a thruster, in the order of kelpie_authority_create(), on an axis, in the order of
+ *  the model's targets. */
+kelpie_status kelpie_authority_thruster(const kelpie_authority* authority, size_t thruster,
+                                        size_t axis, kelpie_thruster_effect* effect);
+
+/** A singular value, from 0, the greatest, to one less than the number of targets, of the
+ *  effectiveness matrix whose rows are divided by the nominal ranges of the axes. `nominal`: null,
+ *  or the value before any change of the vehicle. */
+kelpie_status kelpie_authority_singular_value(const kelpie_authority* authority, size_t i,
+                                              double* value, double* nominal);
+
 #ifdef __cplusplus
 }
 #endif

@@ -36,10 +36,14 @@ class DeadReckoning:
     def __init__(self, model: _Model, *, planar: Optional[bool] = None, current: float = 0.1,
                  practice_s: float = 20.0, between: str = "linear", step_s: float = 0.25,
                  checks: bool = True) -> None:
+        self._reckoning = _kelpie.DeadReckoning(self._trained(model), planar, current, practice_s,
+                                                self._is_held(between), step_s, checks)
+
+    @staticmethod
+    def _is_held(between: str) -> bool:
         if between not in ("linear", "held"):
             raise ValueError(f"between: {between!r} is not known; 'linear' and 'held' are")
-        self._reckoning = _kelpie.DeadReckoning(self._trained(model), planar, current, practice_s,
-                                                between == "held", step_s, checks)
+        return between == "held"
 
     @staticmethod
     def _trained(model: _Model) -> _kelpie.TrainedModel:
@@ -50,6 +54,12 @@ class DeadReckoning:
     def use(self, model: _Model) -> None:
         """Goes on with another model of the same inputs; estimate and current stay."""
         self._reckoning.use(self._trained(model))
+
+    def restate(self, x: ArrayLike, between: str = "linear") -> None:
+        """After use(), where the model has its commands in other units: the last row had the
+        commands of `x` (NaN: unknown; velocities are not looked at). Commands go on as `between`
+        says."""
+        self._reckoning.restate(np.ravel(np.asarray(x, dtype=np.float64)), self._is_held(between))
 
     def update(self, x: ArrayLike, t: float, covariance: Optional[ArrayLike] = None) -> None:
         """Advances to the time t [s] with one row of inputs; NaN: velocity not measured.

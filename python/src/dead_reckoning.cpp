@@ -15,6 +15,10 @@
 namespace kelpie::python {
 namespace {
 
+CommandPath path_of(bool held) {
+  return held ? CommandPath::held : CommandPath::linear;
+}
+
 DeadReckoning make_reckoning(const TrainedModel& model, std::optional<bool> planar,
                              double current_m_s, double practice_s, bool held, double step_s,
                              bool checks) {
@@ -23,7 +27,7 @@ DeadReckoning make_reckoning(const TrainedModel& model, std::optional<bool> plan
   // Columns without names are x0, x1, x2: three velocities are those of the plane.
   const bool by_default = settings.planar || (loop.states.size() == 3 && may_be_planar(loop));
   settings.step_s = step_s;
-  settings.between = held ? CommandPath::held : CommandPath::linear;
+  settings.between = path_of(held);
   settings.planar = planar.value_or(by_default);
   settings.current_m_s = current_m_s;
   settings.practice_s = practice_s;
@@ -34,6 +38,10 @@ DeadReckoning make_reckoning(const TrainedModel& model, std::optional<bool> plan
 void update(DeadReckoning& reckoning, const Array& x, double t, const Array& covariance) {
   reckoning.update({x.data(), static_cast<std::size_t>(x.size())}, t,
                    {covariance.data(), static_cast<std::size_t>(covariance.size())});
+}
+
+void restate(DeadReckoning& reckoning, const Array& x, bool held) {
+  reckoning.restate({x.data(), static_cast<std::size_t>(x.size())}, path_of(held));
 }
 
 Array velocity(const DeadReckoning& reckoning) {
@@ -78,6 +86,7 @@ void bind_dead_reckoning(py::module_& module) {
             reckoning.use(open_loop(model, OpenLoopPart::steady));
           },
           py::arg("model"))
+      .def("restate", &restate, py::arg("x").noconvert(), py::arg("held"))
       .def_property_readonly("faults", &faults)
       .def_property_readonly("step", &DeadReckoning::step)
       .def_property_readonly("started", &DeadReckoning::started)

@@ -109,6 +109,30 @@ def test_goes_on_with_a_later_model(learned):
         reckoning.use(other.fit(x[:1200], x[:1200, :2]))
 
 
+def test_commands_go_on_as_they_are_restated(learned):
+    model, t, x = learned
+
+    def surge_after(between, commands=x[1199, 3:]):
+        reckoning = kelpie.DeadReckoning(model)
+        for k in range(1000, 1200):
+            reckoning.update(x[k], t[k])
+        row = np.concatenate([np.full(3, np.nan), commands])
+        reckoning.restate(row, between)
+        ahead = row.copy()
+        ahead[3:5] = 9.0
+        reckoning.update(ahead, t[1200])
+        return reckoning.velocity[0]
+
+    linear, held = surge_after("linear"), surge_after("held")
+    assert held != pytest.approx(linear, abs=1e-4), "the step comes at the end of the interval"
+    assert surge_after("held", commands=np.zeros(3)) < held, "a coasting vehicle slows down"
+    reckoning = kelpie.DeadReckoning(model)
+    with pytest.raises(ValueError, match="x: has 3 values"):
+        reckoning.restate(x[0, :3])
+    with pytest.raises(ValueError, match="between"):
+        reckoning.restate(x[0], "splines")
+
+
 def named(x, a, velocities):
     model = kelpie.DynamicsModel(inputs=[*velocities, "n0", "n1", "n2"], buffer=60, rate=4.0)
     return model.fit(x[:1200], a[:1200])

@@ -91,3 +91,36 @@ kelpie_status kelpie_authority_allocate(const kelpie_authority* authority, const
     }
   });
 }
+
+kelpie_status kelpie_authority_thruster(const kelpie_authority* authority, size_t thruster,
+                                        size_t axis, kelpie_thruster_effect* effect) {
+  return kelpie::guarded([&] {
+    kelpie::require_pointer("authority", authority);
+    kelpie::require_pointer("effect", effect);
+    const kelpie::Authority& from = authority->authority;
+    kelpie::require(thruster < from.thrusters().size(), "thruster", "is beyond the last");
+    kelpie::require(axis < from.axes().size(), "axis", "is beyond the targets of the model");
+    const kelpie::ThrusterEffect& one = from.thrusters()[thruster];
+    *effect = {.ahead = one.ahead[axis],
+               .astern = one.astern[axis],
+               .ahead_width = one.ahead_width[axis],
+               .astern_width = one.astern_width[axis],
+               .nominal_ahead = one.nominal_ahead[axis],
+               .nominal_astern = one.nominal_astern[axis],
+               .share = one.share};
+  });
+}
+
+kelpie_status kelpie_authority_singular_value(const kelpie_authority* authority, size_t i,
+                                              double* value, double* nominal) {
+  return kelpie::guarded([&] {
+    kelpie::require_pointer("authority", authority);
+    kelpie::require_pointer("value", value);
+    const kelpie::Authority& from = authority->authority;
+    kelpie::require(i < from.singular_values().size(), "i", "is beyond the last singular value");
+    *value = from.singular_values()[i];
+    if (nominal != nullptr) {
+      *nominal = from.nominal_singular_values()[i];
+    }
+  });
+}

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,8 @@ namespace {
 
 static_assert(KELPIE_VELOCITY_IMPLAUSIBLE == static_cast<int>(VelocityFault::implausible) &&
               KELPIE_VELOCITY_ZERO == static_cast<int>(VelocityFault::zero));
+static_assert(KELPIE_COMMANDS_HELD == static_cast<int>(CommandPath::held) &&
+              KELPIE_COMMANDS_LINEAR == static_cast<int>(CommandPath::linear));
 
 OpenLoop loop_of(const kelpie_model* model) {
   require_pointer("model", model);
@@ -87,4 +90,56 @@ kelpie_status kelpie_reckoning_velocity(const kelpie_reckoning* reckoning, doubl
 
 double kelpie_reckoning_silent_s(const kelpie_reckoning* reckoning) {
   return reckoning->reckoning.silent_s();
+}
+
+kelpie_status kelpie_reckoning_measured_heading(kelpie_reckoning* reckoning, double heading,
+                                                double deviation) {
+  return kelpie::guarded([&] {
+    kelpie::require_pointer("reckoning", reckoning);
+    reckoning->reckoning.measured_heading(heading, deviation);
+  });
+}
+
+double kelpie_reckoning_heading(const kelpie_reckoning* reckoning) {
+  return reckoning->reckoning.heading();
+}
+
+kelpie_status kelpie_reckoning_current(const kelpie_reckoning* reckoning, double* current) {
+  return kelpie::guarded([&] {
+    kelpie::require_pointer("reckoning", reckoning);
+    kelpie::require_pointer("current", current);
+    std::ranges::copy(reckoning->reckoning.current(), current);
+  });
+}
+
+kelpie_status kelpie_reckoning_drift(const kelpie_reckoning* reckoning, double* position,
+                                     double* covariance) {
+  return kelpie::guarded([&] {
+    kelpie::require_pointer("reckoning", reckoning);
+    kelpie::require_pointer("position", position);
+    const kelpie::Drift drift = reckoning->reckoning.drift();
+    std::ranges::copy(drift.position_m, position);
+    if (covariance != nullptr) {
+      std::ranges::copy(drift.covariance_m2, covariance);
+    }
+  });
+}
+
+double kelpie_reckoning_step(const kelpie_reckoning* reckoning) {
+  return reckoning->reckoning.step();
+}
+
+double kelpie_reckoning_noise_factor(const kelpie_reckoning* reckoning) {
+  return reckoning->reckoning.noise_factor();
+}
+
+kelpie_status kelpie_reckoning_restate(kelpie_reckoning* reckoning, const double* x, size_t inputs,
+                                       int32_t path) {
+  return kelpie::guarded([&] {
+    kelpie::require_pointer("reckoning", reckoning);
+    kelpie::require_pointer("x", x);
+    kelpie::require(path == KELPIE_COMMANDS_HELD || path == KELPIE_COMMANDS_LINEAR, "path",
+                    "has to be KELPIE_COMMANDS_HELD or KELPIE_COMMANDS_LINEAR");
+    reckoning->reckoning.restate({x, inputs}, static_cast<kelpie::CommandPath>(path));
+  });
 }

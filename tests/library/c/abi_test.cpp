@@ -60,7 +60,9 @@ std::vector<std::string> sizes() {
           size_of<kelpie_prediction>("kelpie_prediction"),
           size_of<kelpie_cause>("kelpie_cause"),
           size_of<kelpie_finding>("kelpie_finding"),
-          size_of<kelpie_axis_authority>("kelpie_axis_authority")};
+          size_of<kelpie_axis_authority>("kelpie_axis_authority"),
+          size_of<kelpie_thruster_effect>("kelpie_thruster_effect"),
+          size_of<kelpie_command_path>("kelpie_command_path")};
 }
 
 // An enumeration may get further values at its end.

@@ -16,6 +16,9 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/navigation/dead_reckoning.hpp"
 #include "model/dynamics_axis.hpp"
 #include "model/model_block.hpp"
 
@@ -262,17 +265,29 @@ Model boat_model(const std::array<const char*, 5>& inputs = kBoat) {
   return {model, kelpie_free};
 }
 
+DynamicsModel class_of_boat() {
+  ModelSettings settings = ModelSettings::from_preset("default", 3);
+  settings.assign("buffer", "60");
+  return {{kBoat.begin(), kBoat.end()}, {kBoatTargets.begin(), kBoatTargets.end()}, settings};
+}
+
+void learn_boat(const Model& model, Boat& boat, int rows, DynamicsModel* the_same = nullptr) {
+  for (int i = 0; i < rows; ++i) {
+    const auto [x, y, t] = boat.next();
+    ASSERT_EQ(kelpie_update(model.get(), x.data(), 5, y.data(), 3, t, nullptr), KELPIE_OK);
+    if (the_same != nullptr) {
+      the_same->update(x, y, t);
+    }
+  }
+}
+
 TEST(InC, AChangeIsToldWithCauseSizeIntervalAndTime) {
   const Model model = boat_model();
   Boat boat;
   std::size_t count = 1;
   ASSERT_EQ(kelpie_findings(model.get(), nullptr, 0, &count), KELPIE_OK);
   EXPECT_EQ(count, 0U);
-  for (int i = 0; i < kDamage + 1500; ++i) {
-    const Boat::Row row = boat.next();
-    ASSERT_EQ(kelpie_update(model.get(), row.x.data(), 5, row.y.data(), 3, row.t, nullptr),
-              KELPIE_OK);
-  }
+  learn_boat(model, boat, kDamage + 1500);
   std::array<kelpie_finding, KELPIE_MOST_FINDINGS> findings{};
   ASSERT_EQ(kelpie_findings(model.get(), findings.data(), findings.size(), &count), KELPIE_OK);
   ASSERT_EQ(count, 1U);
@@ -521,11 +536,7 @@ TEST(InC, ALogOfZerosIsSilentWhileAGyroGoesOn) {
   const Model model = boat_model({"u", "w", "r", "n1", "n2"});
   Boat boat;
   Boat::Row row{};
-  for (int i = 0; i < 2000; ++i) {
-    row = boat.next();
-    ASSERT_EQ(kelpie_update(model.get(), row.x.data(), 5, row.y.data(), 3, row.t, nullptr),
-              KELPIE_OK);
-  }
+  learn_boat(model, boat, 2000);
   kelpie_reckoning* reckoning = nullptr;
   EXPECT_EQ(kelpie_reckoning_create(model.get(), 1, &reckoning), KELPIE_BAD_INPUT);
   EXPECT_STREQ(kelpie_last_error(),
@@ -548,6 +559,172 @@ TEST(InC, ALogOfZerosIsSilentWhileAGyroGoesOn) {
   EXPECT_NEAR(velocity[0], row.x[0], 0.05);
   EXPECT_NEAR(velocity[2], row.x[2], 0.05);
   kelpie_reckoning_free(reckoning);
+}
+
+// The matrix after half of a thruster's thrust is lost, by the class and in C.
+TEST(InC, TheEffectivenessMatrixIsThatOfTheClass) {
+  const Model model = boat_model();
+  DynamicsModel the_same = class_of_boat();
+  Boat boat;
+  learn_boat(model, boat, kDamage + 1500, &the_same);
+  const std::array thrusters{"n2", "n1"};
+  const std::array least{-4.0, -5.0};
+  const std::array most{6.0, 5.0};
+  kelpie_authority* made = nullptr;
+  ASSERT_EQ(
+      kelpie_authority_create(model.get(), thrusters.data(), least.data(), most.data(), 2, &made),
+      KELPIE_OK)
+      << kelpie_last_error();
+  const std::unique_ptr<kelpie_authority, decltype(&kelpie_authority_free)> authority(
+      made, kelpie_authority_free);
+  const Authority expected(*the_same.diagnosis(), {{4, -4.0, 6.0}, {3, -5.0, 5.0}});
+  kelpie_thruster_effect effect{};
+  for (std::size_t j = 0; j < 2; ++j) {
+    const ThrusterEffect& one = expected.thrusters()[j];
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_EQ(kelpie_authority_thruster(made, j, i, &effect), KELPIE_OK);
+      const std::array in_c{effect.ahead,        effect.astern,        effect.ahead_width,
+                            effect.astern_width, effect.nominal_ahead, effect.nominal_astern,
+                            effect.share};
+      const std::array by_the_class{
+          one.ahead[i],         one.astern[i],         one.ahead_width[i], one.astern_width[i],
+          one.nominal_ahead[i], one.nominal_astern[i], one.share};
+      EXPECT_EQ(in_c, by_the_class) << j << " " << i;
+    }
+  }
+  ASSERT_EQ(kelpie_authority_thruster(made, 0, 0, &effect), KELPIE_OK);
+  EXPECT_NEAR(effect.share, 0.5, 0.03);
+  EXPECT_NEAR(effect.nominal_ahead, 0.36, 0.02);  // 0.01 n2²
+  EXPECT_NEAR(effect.ahead, 0.18, 0.02);
+  double value = 0.0;
+  double nominal = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_EQ(kelpie_authority_singular_value(made, i, &value, &nominal), KELPIE_OK);
+    EXPECT_EQ(value, expected.singular_values()[i]);
+    EXPECT_EQ(nominal, expected.nominal_singular_values()[i]);
+  }
+  EXPECT_EQ(kelpie_authority_singular_value(made, 0, &value, nullptr), KELPIE_OK);
+  EXPECT_EQ(kelpie_authority_singular_value(made, 3, &value, nullptr), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "i: is beyond the last singular value");
+  EXPECT_EQ(kelpie_authority_singular_value(made, 0, nullptr, nullptr), KELPIE_BAD_INPUT);
+  EXPECT_EQ(kelpie_authority_thruster(made, 2, 0, &effect), KELPIE_BAD_INPUT);
+  EXPECT_STREQ(kelpie_last_error(), "thruster: is beyond the last");
+  EXPECT_EQ(kelpie_authority_thruster(made, 0, 3, &effect), KELPIE_BAD_INPUT);
+  EXPECT_EQ(kelpie_authority_thruster(made, 0, 0, nullptr), KELPIE_BAD_INPUT);
+}
+
+using Reckoning = std::unique_ptr<kelpie_reckoning, decltype(&kelpie_reckoning_free)>;
+
+Reckoning reckoning_of(const Model& model, int planar) {
+  kelpie_reckoning* reckoning = nullptr;
+  EXPECT_EQ(kelpie_reckoning_create(model.get(), planar, &reckoning), KELPIE_OK)
+      << kelpie_last_error();
+  return {reckoning, kelpie_reckoning_free};
+}
+
+void expect_same_navigation(const kelpie_reckoning* in_c, const DeadReckoning& by_the_class) {
+  std::array<double, 2> current{};
+  Drift drift{};
+  ASSERT_EQ(kelpie_reckoning_current(in_c, current.data()), KELPIE_OK);
+  ASSERT_EQ(kelpie_reckoning_drift(in_c, drift.position_m.data(), drift.covariance_m2.data()),
+            KELPIE_OK);
+  EXPECT_EQ(current, by_the_class.current());
+  EXPECT_EQ(drift.position_m, by_the_class.drift().position_m);
+  EXPECT_EQ(drift.covariance_m2, by_the_class.drift().covariance_m2);
+  EXPECT_EQ(kelpie_reckoning_heading(in_c), by_the_class.heading());
+  EXPECT_EQ(kelpie_reckoning_step(in_c), by_the_class.step());
+  EXPECT_EQ(kelpie_reckoning_noise_factor(in_c), by_the_class.noise_factor());
+}
+
+// Measured headings, an outage, and commands restated within: all numbers of navigation.
+TEST(InC, HeadingCurrentAndPositionAreThoseOfTheClass) {
+  const Model model = boat_model();
+  DynamicsModel the_same = class_of_boat();
+  Boat boat;
+  learn_boat(model, boat, 2000, &the_same);
+  const Reckoning reckoning = reckoning_of(model, 1);
+  DeadReckoning by_the_class(open_loop(the_same.trained(), OpenLoopPart::steady));
+  double heading = 0.7;
+  const auto drive = [&](int rows, bool is_silent) {
+    for (int i = 0; i < rows; ++i) {
+      auto [x, y, t] = boat.next();
+      heading += 0.1 * x[2];
+      if (is_silent) {
+        x[0] = x[1] = kNan;
+      }
+      ASSERT_EQ(kelpie_reckoning_update(reckoning.get(), x.data(), 5, t, nullptr), KELPIE_OK);
+      by_the_class.update(x, t);
+      ASSERT_EQ(kelpie_reckoning_measured_heading(reckoning.get(), heading, 0.02), KELPIE_OK);
+      by_the_class.measured_heading(heading, 0.02);
+    }
+  };
+  drive(600, false);
+  EXPECT_GT(kelpie_reckoning_step(reckoning.get()), 0.0);
+  expect_same_navigation(reckoning.get(), by_the_class);
+  drive(100, true);
+  const std::array<double, 5> x{kNan, kNan, kNan, 4.0, -2.0};
+  ASSERT_EQ(kelpie_reckoning_restate(reckoning.get(), x.data(), 5, KELPIE_COMMANDS_HELD),
+            KELPIE_OK);
+  by_the_class.restate(x, CommandPath::held);
+  drive(100, true);
+  expect_same_navigation(reckoning.get(), by_the_class);
+  EXPECT_NEAR(kelpie_reckoning_heading(reckoning.get()), heading, 0.05);
+  std::array<double, 2> position{};
+  ASSERT_EQ(kelpie_reckoning_drift(reckoning.get(), position.data(), nullptr), KELPIE_OK);
+  EXPECT_GT(std::hypot(position[0], position[1]), 0.1);
+}
+
+// Held commands and linear commands drive differently: the path reaches the estimator.
+TEST(InC, CommandsGoOnAsTheyAreRestated) {
+  const Model model = boat_model();
+  Boat boat;
+  learn_boat(model, boat, 2000);
+  const auto surge_after = [&](std::int32_t path) {
+    const Reckoning reckoning = reckoning_of(model, 1);
+    const std::array<double, 5> at_rest{};
+    kelpie_reckoning_update(reckoning.get(), at_rest.data(), 5, 0.0, nullptr);
+    EXPECT_EQ(kelpie_reckoning_restate(reckoning.get(), at_rest.data(), 5, path), KELPIE_OK);
+    const std::array<double, 5> ahead{kNan, kNan, kNan, 6.0, 6.0};
+    kelpie_reckoning_update(reckoning.get(), ahead.data(), 5, 0.5, nullptr);
+    std::array<double, 3> velocity{};
+    kelpie_reckoning_velocity(reckoning.get(), velocity.data(), nullptr, nullptr, 3);
+    return velocity[0];
+  };
+  EXPECT_NEAR(surge_after(KELPIE_COMMANDS_HELD), 0.0, 0.02);
+  EXPECT_GT(surge_after(KELPIE_COMMANDS_LINEAR), 0.05);
+}
+
+TEST(InC, NavigationRefusesWhatTheClassRefuses) {
+  const Model model = made();
+  learn(model.get(), 0, 1000);
+  const Reckoning reckoning = reckoning_of(model, 0);
+  std::array<double, 5> x{};
+  const auto refused = [](kelpie_status status, const std::string& message) {
+    EXPECT_EQ(status, KELPIE_BAD_INPUT);
+    EXPECT_EQ(kelpie_last_error(), message);
+  };
+  refused(kelpie_reckoning_measured_heading(reckoning.get(), 0.0, 0.1),
+          "heading: is known of planar motion only");
+  refused(kelpie_reckoning_measured_heading(nullptr, 0.0, 0.1), "reckoning: is null");
+  refused(kelpie_reckoning_restate(reckoning.get(), x.data(), 5, KELPIE_COMMANDS_HELD),
+          "x: has 5 values; it has to have 4");
+  refused(kelpie_reckoning_restate(reckoning.get(), nullptr, 4, KELPIE_COMMANDS_HELD),
+          "x: is null");
+  refused(kelpie_reckoning_restate(reckoning.get(), x.data(), 4, 2),
+          "path: has to be KELPIE_COMMANDS_HELD or KELPIE_COMMANDS_LINEAR");
+  refused(kelpie_reckoning_restate(nullptr, x.data(), 4, 0), "reckoning: is null");
+  refused(kelpie_reckoning_current(reckoning.get(), nullptr), "current: is null");
+  refused(kelpie_reckoning_current(nullptr, x.data()), "reckoning: is null");
+  refused(kelpie_reckoning_drift(reckoning.get(), nullptr, x.data()), "position: is null");
+  refused(kelpie_reckoning_drift(nullptr, x.data(), nullptr), "reckoning: is null");
+  EXPECT_EQ(kelpie_reckoning_heading(reckoning.get()), 0.0);
+  const Model boat = boat_model();
+  Boat vehicle;
+  learn_boat(boat, vehicle, 2000);
+  const Reckoning planar = reckoning_of(boat, 1);
+  refused(kelpie_reckoning_measured_heading(planar.get(), kNan, 0.1), "heading: has to be finite");
+  refused(kelpie_reckoning_measured_heading(planar.get(), 0.0, 0.0),
+          "deviation: has to be > 0 rad");
 }
 
 }  // namespace
