@@ -22,7 +22,7 @@ case ${1:-} in
       pybind11-dev python3-dev python3-numpy python3-setuptools python3-pip python3-build
       python3-pytest python3-sklearn python3-pandas python3-matplotlib python3-distributed
       chromium chromium-driver python3-selenium
-      debhelper dh-python patchelf libxml2-utils
+      debhelper dh-python patchelf libxml2-utils lua5.3
     )
     ;;
 esac

@@ -17,6 +17,66 @@ constexpr double kLeastRest = 1400.0;  // µs, of a pulse at rest
 constexpr double kMostRest = 1600.0;
 constexpr int kHoldMs = 300;  // of an output without a further command
 
+// Instructions of a run of the script: ArduPilot's default of SCR_VM_I_COUNT, and those of loading
+// beside the setpoints, with room.
+constexpr std::size_t kUsualSteps = 10000;
+constexpr std::size_t kScriptSteps = 200;
+
+// After the tables `functions` and `setpoints`. A vehicle that is armed when the script is loaded,
+// as after a restart of scripting under way, isn't driven.
+constexpr const char* kDriveScript = R"(local channels = {}
+local began
+local at
+local wait_for_disarming, wait_for_arming, drive
+
+local function put_out(row)
+  for i = 1, #channels do
+    SRV_Channels:set_output_pwm_chan_timeout(channels[i], setpoints[row][i + 1], hold_ms)
+  end
+end
+
+wait_for_disarming = function()
+  if arming:is_armed() then
+    return wait_for_disarming, 100
+  end
+  gcs:send_text(6, "kelpie plan: begins when armed")
+  return wait_for_arming, 100
+end
+
+wait_for_arming = function()
+  if not arming:is_armed() then
+    return wait_for_arming, 100
+  end
+  for i = 1, #functions do
+    channels[i] = SRV_Channels:find_channel(functions[i])
+    if not channels[i] then
+      gcs:send_text(3, "kelpie plan: no SERVOn_FUNCTION is " .. functions[i])
+      return wait_for_disarming, 100
+    end
+  end
+  gcs:send_text(6, "kelpie plan: begins")
+  began = millis():toint()
+  at = 1
+  return drive()
+end
+
+drive = function()
+  local t = millis():toint() - began
+  while at < #setpoints and setpoints[at + 1][1] <= t do
+    at = at + 1
+  end
+  if at < #setpoints and arming:is_armed() then
+    put_out(at)
+    return drive, math.min(50, setpoints[at + 1][1] - t)
+  end
+  put_out(#setpoints) -- at rest; then the outputs are the autopilot's again
+  gcs:send_text(6, at < #setpoints and "kelpie plan: stopped" or "kelpie plan: at its end")
+  return wait_for_disarming, 100
+end
+
+return wait_for_disarming, 1000
+)";
+
 // SERVOn_FUNCTION of ArduPilot's motors: motor 1 has 33, motor 9 has 82.
 constexpr int kLastMotor = 12;
 constexpr int motor_function(int motor) {
@@ -130,53 +190,32 @@ bool has_pulses(const PlannedDrive& drive) {
 }
 
 std::string drive_lua(const PlannedDrive& drive) {
-  std::string text = fmt::format(
-      "-- Drive planned by `kelpie plan`: {:g} s, then rest. Put into APM/scripts, SCR_ENABLE 1.\n"
-      "-- Begins when the vehicle is armed; disarm to stop. The pilot's sticks don't reach these\n"
-      "-- motors meanwhile: no hold of depth. Clear water of {:g} m around the start is needed.\n"
-      "local functions = {{",
-      drive.plan.duration_s(), drive.bounds.radius_m);
-  for (const std::string& thruster : drive.thrusters) {
-    text += fmt::format("{}, ", motor_function(motor_number(thruster)));
-  }
-  text += "} -- SERVOn_FUNCTION\nlocal setpoints = { -- ms, then a pulse in us for each\n";
+  std::string setpoints;
+  std::size_t steps = kScriptSteps;
   each_setpoint(drive, [&](double t, const std::vector<double>& commands) {
-    text += fmt::format("  {{{:.0f}", 1000.0 * t);
+    setpoints += fmt::format("  {{{:.0f}", 1000.0 * t);
     for (const double command : commands) {
-      text += fmt::format(", {:.0f}", std::clamp(command, 1100.0, 1900.0));
+      setpoints += fmt::format(", {:.0f}", std::clamp(command, 1100.0, 1900.0));
     }
-    text += "},\n";
+    setpoints += "},\n";
+    steps += commands.size() + 4;
   });
-  text += fmt::format(
-      "}}\n"
-      "local began = nil\n"
-      "local at = 1\n"
-      "local function drive()\n"
-      "  if not arming:is_armed() then\n"
-      "    began = nil\n"
-      "    at = 1\n"
-      "    return drive, 100\n"
-      "  end\n"
-      "  began = began or millis():toint()\n"
-      "  local t = millis():toint() - began\n"
-      "  while at < #setpoints and setpoints[at + 1][1] <= t do\n"
-      "    at = at + 1\n"
-      "  end\n"
-      "  if at == #setpoints then\n"
-      "    return drive, 100 -- the end: outputs are the autopilot's again\n"
-      "  end\n"
-      "  for i = 1, #functions do\n"
-      "    local channel = SRV_Channels:find_channel(functions[i])\n"
-      "    if channel then\n"
-      "      SRV_Channels:set_output_pwm_chan_timeout(channel, setpoints[at][i + 1], {})\n"
-      "    end\n"
-      "  end\n"
-      "  return drive, 50\n"
-      "end\n"
-      "gcs:send_text(6, \"kelpie plan: waiting for arming\")\n"
-      "return drive, 1000\n",
-      kHoldMs);
-  return text;
+  std::string functions;
+  for (const std::string& thruster : drive.thrusters) {
+    functions += fmt::format("{}, ", motor_function(motor_number(thruster)));
+  }
+  return fmt::format(
+             "-- Drive planned by `kelpie plan`: {:g} s, then rest. Put into APM/scripts;\n"
+             "-- SCR_ENABLE 1, SCR_VM_I_COUNT {} or more.\n"
+             "-- Begins at every arming from now on; disarm to stop. The pilot's sticks don't\n"
+             "-- reach these motors meanwhile: no hold of depth. Clear water of {:g} m around the\n"
+             "-- start is needed.\n"
+             "local functions = {{{}}} -- SERVOn_FUNCTION\n"
+             "local setpoints = {{ -- ms, then a pulse in us for each\n{}}}\n"
+             "local hold_ms = {} -- of a pulse without a further one\n",
+             drive.plan.duration_s(), std::max(steps, kUsualSteps), drive.bounds.radius_m,
+             functions, setpoints, kHoldMs) +
+         kDriveScript;
 }
 
 }  // namespace kelpie::format

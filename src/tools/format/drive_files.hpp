@@ -34,9 +34,11 @@ std::string drive_json(const PlannedDrive& drive);
 /// motors, 1 to 12.
 bool has_pulses(const PlannedDrive& drive);
 
-/// A Lua script for ArduSub that holds the pulses on the outputs of the motors, begins when the
-/// vehicle is armed, and lets go when disarmed, at the end, and after a pause of the script
-/// (ArduPilot, libraries/AP_Scripting/examples/servo_set_get.lua). Requires has_pulses().
+/// A Lua script for ArduSub that holds the pulses on the outputs of the motors. Begins whenever the
+/// vehicle is armed, not where armed already as the script is loaded, and not without an output for
+/// every motor. At the end, and when disarmed, the motors rest; then, as after a pause of the
+/// script, the outputs are the autopilot's (ArduPilot, libraries/AP_Scripting: docs/docs.lua,
+/// examples/servo_set_get.lua). Requires has_pulses().
 std::string drive_lua(const PlannedDrive& drive);
 
 }  // namespace kelpie::format
