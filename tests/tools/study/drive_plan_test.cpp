@@ -60,6 +60,7 @@ class NoisyDrive {
         for (std::size_t axis = 0; axis < kPlanarAxes; ++axis) {
           velocity_[axis] += kRowS / kParts * slope[axis];
         }
+        move(kRowS / kParts);
       }
       fastest_ = std::max(fastest_, std::hypot(velocity_[0], velocity_[1]));
     }
@@ -77,12 +78,23 @@ class NoisyDrive {
 
   const PlanarRows& rows() const { return rows_; }
   double fastest() const { return fastest_; }
+  double farthest() const { return farthest_; }  ///< m, from the start
 
  private:
+  void move(double dt_s) {
+    const auto [surge, sway, yaw_rate] = velocity_;
+    x_ += dt_s * (surge * std::cos(heading_) - sway * std::sin(heading_));
+    y_ += dt_s * (surge * std::sin(heading_) + sway * std::cos(heading_));
+    heading_ += dt_s * yaw_rate;
+    farthest_ = std::max(farthest_, std::hypot(x_, y_));
+  }
+
   RandomStream random_;
   PlanarVector velocity_{};
   PlanarRows rows_;
+  double x_ = 0.0, y_ = 0.0, heading_ = 0.0;
   double fastest_ = 0.0;
+  double farthest_ = 0.0;
 };
 
 const ThrusterRange kRange{{-12.0, -12.0, -12.0}, {12.0, 12.0, 12.0}};
@@ -128,7 +140,7 @@ TEST(DrivePlan, ExpectsTheErrorsOfTheFitAfterTheDrive) {
   EXPECT_GT(gain, 1.0);
 }
 
-// The true vehicle keeps the speed, whatever the noise.
+// The true vehicle keeps speed and distance, whatever the noise, coasting included.
 TEST(DrivePlan, KeepsTheBounds) {
   for (std::uint64_t seed = 11; seed < 14; ++seed) {
     NoisyDrive drive(seed);
@@ -144,7 +156,10 @@ TEST(DrivePlan, KeepsTheBounds) {
         again.hold(part.speeds, part.duration_s);
       }
     }
+    again.hold({0.0, 0.0, 0.0}, kTuning.plan.coast_s);
     EXPECT_LE(again.fastest(), bounds.speed_m_s) << seed;
+    EXPECT_LE(again.farthest(), bounds.radius_m) << seed;
+    EXPECT_GT(again.farthest(), 0.2 * plan.extent.farthest_m) << seed;
   }
 }
 
