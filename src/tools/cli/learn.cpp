@@ -36,6 +36,7 @@
 #include "report/verdict.hpp"
 #include "study/nominal.hpp"
 #include "study/six_axes.hpp"
+#include "study/split.hpp"
 #include "vehicle/scenario_file.hpp"
 
 namespace kelpie::cli {
@@ -279,6 +280,18 @@ file::OutFolder take_learn_folder(const LearnArguments& options, std::vector<std
   return take_out_folder(options.out, written, read);
 }
 
+// The options of `kelpie plan`, which holds no rows out and knows no current; none where a column
+// says which rows are held out, which would be an input there.
+std::optional<std::string> planning_text(PlanOptions options) {
+  if (!study::parse_split(options.split, options.seed).column.empty()) {
+    return std::nullopt;
+  }
+  options.split = PlanOptions().split;
+  options.seed = PlanOptions().seed;
+  options.has_current = false;
+  return options.learning_text(options.config);
+}
+
 // The log for the next commands; learned anew only where no other log follows, of other times.
 // `draft`: file of the guessed configuration, or empty. A model's inputs are a choice, with which
 // nothing is guessed.
@@ -293,6 +306,7 @@ report::LogWords words_of(const LearnArguments& options, const std::string& draf
     words.judging = read.judging_text(read.config);
   }
   if (options.more.empty()) {
+    words.planning = planning_text(options);
     PlanOptions again = options;
     again.since_s.reset();
     std::string text = again.learning_text(options.config);

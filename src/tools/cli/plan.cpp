@@ -266,8 +266,9 @@ void add_plan(CLI::App& app) {
       ->check(within(0.1, 100.0))
       ->capture_default_str();
   add_list(command, "--apart", options->apart,
-           "instead: two suspected causes of a change, as in th2,drag: thrusters, drag, "
-           "surge_drag, sway_drag, yaw_drag, load");
+           "instead: two suspected causes of a change, as in th2,drag: thrusters, "
+           "all_thrusters, drag, surge_drag, sway_drag, yaw_drag, load, surge_force, "
+           "sway_force, yaw_moment");
   command->add_option("--change", options->change, "suspected size of the change in %")
       ->check(within(1.0, 100.0))
       ->capture_default_str();

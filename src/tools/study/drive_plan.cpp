@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kWrongVehicle = 100.0;  // misfit
 constexpr const char* kLoad = "load";    // a change of all inertias
+constexpr const char* kAllThrusters = "all_thrusters";
 
 bool is_told(const FittedParameter& parameter) {
   return parameter.state == ParameterState::identified || parameter.state == ParameterState::known;
@@ -136,21 +137,53 @@ class DriveRecord {
   double time_s_ = 0.0;
 };
 
-// A change by `share`: of a thruster's thrust, of all inertias ("load"), else of what has the
-// words.
+bool is_thrust(const FittedParameter& parameter) {
+  return parameter.kind == ParameterKind::size &&
+         (parameter.name.ends_with(".forward") || parameter.name.ends_with(".reverse"));
+}
+
+bool is_changed(const FittedParameter& parameter, const std::string& cause) {
+  using enum ParameterKind;
+  if (cause == kLoad) {
+    return parameter.kind == inertia || parameter.kind == coupling;
+  }
+  if (cause == kAllThrusters) {
+    return is_thrust(parameter);
+  }
+  return parameter.kind == offset ? parameter.name == cause
+                                  : is_size(parameter) && has_words(parameter.name, cause);
+}
+
+// A constant force may be 0: the drag of its axis at 1 m/s or 1 rad/s is its size.
+double changed_size(const ParameterFit& fit, const FittedParameter& parameter) {
+  if (parameter.kind != ParameterKind::offset) {
+    return parameter.value;
+  }
+  const std::string axis =
+      parameter.name == "net_weight" ? "heave" : words_of(parameter.name).front();
+  double drag = 0.0;
+  for (const FittedParameter& one : fit.parameters) {
+    drag += one.name.starts_with(axis + "_") && one.name.ends_with("_drag") ? one.value : 0.0;
+  }
+  return drag;
+}
+
+// A change by `share` of what a cause has.
 std::vector<double> change_of(const ParameterFit& fit, const std::string& cause, double share) {
-  std::vector<double> change(fit.parameters.size(), 0.0);
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    const FittedParameter& parameter = fit.parameters[i];
-    const bool is_wanted = cause == kLoad ? parameter.kind == ParameterKind::inertia ||
-                                                parameter.kind == ParameterKind::coupling
-                                          : is_size(parameter) && has_words(parameter.name, cause);
-    change[i] = is_wanted ? share * fit.parameters[i].value : 0.0;
+  std::vector<double> change;
+  std::vector<std::string> forces;
+  for (const FittedParameter& parameter : fit.parameters) {
+    change.push_back(is_changed(parameter, cause) ? share * changed_size(fit, parameter) : 0.0);
+    if (parameter.kind == ParameterKind::offset) {
+      forces.push_back(parameter.name);
+    }
   }
   if (std::ranges::all_of(change, [](double value) { return value == 0.0; })) {
-    throw InputError("--apart", "'" + cause +
-                                    "' changes nothing that is known; a cause is a thruster of "
-                                    "the log, drag, surge_drag, sway_drag, yaw_drag or load");
+    throw InputError("--apart",
+                     fmt::format("'{}' changes nothing that is known; a cause is a thruster of the "
+                                 "log, {}, drag, surge_drag, sway_drag, yaw_drag, {} or a constant "
+                                 "force: {}",
+                                 cause, kAllThrusters, kLoad, join_text(forces, ", ")));
   }
   return change;
 }

@@ -81,10 +81,11 @@ using FitScale = std::function<void(ParameterFit&)>;
 DriveGoal telling_goal(const ExpectedFit& expected, std::vector<std::size_t> parameters,
                        double share, FitScale scale);
 
-/// To tell two changes of the vehicle apart, each a name of wanted_places() or "load", by `share`
-/// of the parameters' values: a thruster by its thrust. The number is the evidence in nats
-/// (ExpectedFit::evidence()), the aim kDiagnosis.named_margin_nats. `expected` has to outlive
-/// the goal. Throws InputError on another name, and on equal changes.
+/// To tell two changes of the vehicle apart, by `share` of the parameters' values: each a name of
+/// wanted_places(), a thruster by its thrust, "all_thrusters", "load" (all inertias), or a constant
+/// force ("surge_force", "yaw_moment"), by `share` of the axis' drag at 1 m/s or 1 rad/s. The
+/// number is the evidence in nats (ExpectedFit::evidence()), the aim kDiagnosis.named_margin_nats.
+/// `expected` has to outlive the goal. Throws InputError on another name, and on equal changes.
 DriveGoal parting_goal(const ExpectedFit& expected, const std::string& first,
                        const std::string& second, double share);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -8,6 +10,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "kelpie/core/random.hpp"
+#include "kelpie/motion/planar_fit.hpp"
 
 namespace kelpie::plan_test {
 namespace {
@@ -113,6 +117,76 @@ TEST_F(Plan, TwoCausesAreToldApart) {
   EXPECT_LE(larger["duration_s"], plan["duration_s"]);
 }
 
+// Every cause that the option names is known, with a drive for each pair.
+TEST_F(Plan, ForcesAndAllThrustersAreCauses) {
+  for (const std::string pair :
+       {"all_thrusters,surge_drag", "load,all_thrusters", "surge_force,th1",
+        "sway_force,yaw_moment", "sway_drag,yaw_drag"}) {
+    const json plan = planned("--apart " + pair + " --change 40 --seconds 40", pair);
+    EXPECT_GT(plan["countdown"].back()["numbers"][0].get<double>(), 0.0) << pair;
+  }
+}
+
+// Two thrusters at one place, the first of which loses half its thrust while both run alike.
+std::string log_of_twins() {
+  const PlanarVehicle sound{.sway_inertia = 1.2,
+                            .yaw_inertia = 0.1,
+                            .linear_drag = {0.16, 0.18, 0.015},
+                            .quadratic_drag = {0.1, 0.7, 0.012},
+                            .thrusters = {{"th1", 3e-4, 2.4e-4, 0.0, 0.32},
+                                          {"th2", 3e-4, 2.4e-4, 0.0, -0.32},
+                                          {"th3", 3e-4, 2.4e-4, 0.0, 0.32},
+                                          {"th4", 4.2e-4, 3.2e-4, 1.57, -0.4}}};
+  PlanarVehicle weak = sound;
+  weak.thrusters[0].forward *= 0.5;
+  weak.thrusters[0].reverse *= 0.5;
+  RandomStream random(1, "twins");
+  std::string text = "t,u,v,r,th1,th2,th3,th4,udot,vdot,rdot\n";
+  PlanarVector velocity{};
+  for (int row = 0; row < 2640; ++row) {
+    const double t = 0.25 * row;
+    const bool is_weak = row >= 2400;
+    std::array<double, 4> speeds{
+        6.0 * std::sin(0.23 * t) + 5.0 * std::sin(0.41 * t), 11.0 * std::sin(0.31 * t + 1.0),
+        6.0 * std::sin(0.17 * t + 2.0) + 5.0 * std::sin(0.47 * t), 11.0 * std::sin(0.13 * t + 3.0)};
+    speeds[2] = is_weak ? speeds[0] : speeds[2];
+    const auto slope = [&] { return (is_weak ? weak : sound).acceleration(velocity, speeds); };
+    text += fmt::format("{}", t);
+    for (const double value : velocity) {
+      text += fmt::format(",{:.6f}", value + 2e-4 * random.normal());
+    }
+    text += fmt::format(",{:.6f}", fmt::join(speeds, ","));
+    for (const double value : slope()) {
+      text += fmt::format(",{:.6f}", value + 1e-3 * random.normal());
+    }
+    text += "\n";
+    for (int part = 0; part < 25; ++part) {
+      const PlanarVector now = slope();
+      for (std::size_t axis = 0; axis < now.size(); ++axis) {
+        velocity[axis] += 0.01 * now[axis];
+      }
+    }
+  }
+  return text;
+}
+
+// The report gives the command for a drive that tells whose fault the loss is.
+TEST_F(Plan, IsTheNextStepAfterAnAmbiguousChange) {
+  write("twins.csv", log_of_twins());
+  const testing::Outcome outcome = testing::succeeded(
+      run("learn twins.csv --align none --split none --out learned" + testing::kFewSamples));
+  const std::size_t begin = outcome.out.find("kelpie plan twins.csv --align none");
+  ASSERT_NE(begin, std::string::npos) << outcome.out;
+  const std::size_t end = outcome.out.find("   (", begin);
+  const std::string command = outcome.out.substr(begin + 7, end - begin - 7);
+  EXPECT_TRUE(command.ends_with(" --apart th1,th3 --change 50") ||
+              command.ends_with(" --apart th3,th1 --change 50"))
+      << command;
+  EXPECT_NE(content("learned/report.html").find("--apart th"), std::string::npos);
+  testing::succeeded(run(command + " --out out"));
+  EXPECT_TRUE(json::parse(content("out/plan.json"))["reached"]);
+}
+
 // Pulses around 1500 us, within the bounds of depth and tilt, and a script for ArduSub.
 TEST_F(Plan, SixAxesWithAVehicleFile) {
   write("heavy.toml", "vehicle = \"" + kHeavy +
@@ -198,6 +272,7 @@ TEST_F(Plan, MistakesAreRefused) {
   refused("--apart th2", "takes two causes");
   refused("--apart th2,th2", "names the same change twice");
   refused("--apart th2,wings", "'wings' changes nothing that is known");
+  refused("--apart th2,force", "or a constant force: surge_force, sway_force, yaw_moment");
   refused("--apart th2,drag --tell drag", "two aims");
   refused("--range th9=-1:1", "'th9' is no thruster");
   refused("--range th1=1:2", "with rest between");

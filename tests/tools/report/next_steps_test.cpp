@@ -71,5 +71,47 @@ TEST(NextSteps, AThrusterThatIsBackLeavesNoRowsOut) {
             "kelpie rollout dive.csv --model model.json");
 }
 
+std::string first_step(study::StreamResult result, const Cause& one, const Cause& other,
+                       FindingState state = FindingState::ambiguous) {
+  Finding finding;
+  finding.state = state;
+  finding.count = 1;
+  finding.causes[0] = one;
+  finding.rival = other;
+  result.diagnosis.findings = {finding};
+  return report::after_learning(result, {.file = "dive.csv", .planning = " --rate 4"}, "model.json")
+      .front()
+      .command;
+}
+
+TEST(NextSteps, ADriveTellsTwoCausesApart) {
+  const study::StreamResult result = synthetic::stream(3);
+  const auto plan = [](const std::string& causes) {
+    return "kelpie plan dive.csv --rate 4 --apart " + causes;
+  };
+  using enum CauseKind;
+  EXPECT_EQ(first_step(result, {thruster, 4, 0.6}, {drag, 1}), plan("th2,sway_drag --change 40"));
+  EXPECT_EQ(first_step(result, {drag, 1, 2.5}, {thruster, 4}), plan("sway_drag,th2 --change 100"));
+  EXPECT_EQ(first_step(result, {all_thrusters, 0, 0.9}, {load, 0}),
+            plan("all_thrusters,load --change 10"));
+  EXPECT_EQ(first_step(result, {force, 0}, {force, 2}), plan("surge_force,yaw_moment"));
+}
+
+TEST(NextSteps, NoDriveIsToldThatWouldBeRefused) {
+  using enum CauseKind;
+  const auto has_plan = [](const std::string& command) { return command.find("plan") < 10; };
+  const study::StreamResult result = synthetic::stream(3);
+  EXPECT_FALSE(has_plan(first_step(result, {thruster, 4}, {sensor_bias, 0})));
+  EXPECT_FALSE(has_plan(first_step(result, {frozen, 1}, {drag, 1})));
+  EXPECT_FALSE(has_plan(first_step(result, {drag, 1}, {drag, 1})));
+  EXPECT_FALSE(has_plan(first_step(result, {thruster, 4}, {drag, 1}, FindingState::named)));
+  study::StreamResult rudder = result;
+  rudder.input_names.back() = "rudder";
+  EXPECT_FALSE(has_plan(first_step(rudder, {thruster, 4}, {drag, 1})));
+  study::StreamResult heave = result;
+  heave.input_names[1] = "w";
+  EXPECT_FALSE(has_plan(first_step(heave, {thruster, 4}, {drag, 0})));
+}
+
 }  // namespace
 }  // namespace kelpie::next_steps_test

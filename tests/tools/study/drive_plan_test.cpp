@@ -13,6 +13,7 @@
 #include "motion/weak_form.hpp"
 #include "study/six_axes.hpp"
 #include "study/tuning.hpp"
+#include "support.hpp"
 #include "vehicle/frames.hpp"
 #include "vehicle/pilot.hpp"
 #include "vehicle/scenario_file.hpp"
@@ -174,21 +175,48 @@ TEST(DrivePlan, NamesAreWordsOfParameters) {
   EXPECT_THROW(parting_goal(expected, "th1", "th1", 0.2), InputError);
 }
 
+/// Two causes after two minutes and a further one of wandering.
+class Suspects {
+ public:
+  Suspects() : expected_(wandered(1, 120.0)), windows_(weak_rows(wandered(2, 60.0), {})) {}
+
+  DriveGoal goal(const std::string& a, const std::string& b, double share) const {
+    return parting_goal(expected_, a, b, share);
+  }
+  double nats(const std::string& a, const std::string& b, double share) const {
+    return goal(a, b, share).progress(windows_).numbers.front();
+  }
+
+ private:
+  static PlanarRows wandered(std::uint64_t seed, double duration_s) {
+    NoisyDrive drive(seed);
+    drive.wander(duration_s);
+    return drive.rows();
+  }
+
+  ExpectedPlanarFit expected_;
+  WeakRows windows_;
+};
+
 // A change and nearly the same change are hard to tell apart; a larger change is told sooner.
 TEST(DrivePlan, EvidenceGrowsWithTheSquareOfTheChange) {
-  NoisyDrive drive(1);
-  drive.wander(120.0);
-  const ExpectedPlanarFit expected(drive.rows());
-  NoisyDrive next(2);
-  next.wander(60.0);
-  const WeakRows windows = weak_rows(next.rows(), {});
-  const auto nats = [&](const std::string& a, const std::string& b, double share) {
-    return parting_goal(expected, a, b, share).progress(windows).numbers.front();
-  };
-  const double small = nats("th2", "drag", 0.1);
+  const Suspects suspects;
+  const double small = suspects.nats("th2", "drag", 0.1);
   EXPECT_GT(small, 0.0);
-  EXPECT_NEAR(nats("th2", "drag", 0.2) / small, 4.0, 0.8);
-  EXPECT_NEAR(nats("th2", "drag", 0.1), nats("drag", "th2", 0.1), 1e-6 * small);
+  EXPECT_NEAR(suspects.nats("th2", "drag", 0.2) / small, 4.0, 0.8);
+  EXPECT_NEAR(suspects.nats("th2", "drag", 0.1), suspects.nats("drag", "th2", 0.1), 1e-6 * small);
+}
+
+// A constant force may be 0, and is told apart from what goes with speed or commands.
+TEST(DrivePlan, AllThrustersAndForcesAreCauses) {
+  const Suspects suspects;
+  EXPECT_GT(suspects.nats("all_thrusters", "th1", 0.2), 1.0);
+  EXPECT_GT(suspects.nats("all_thrusters", "surge_force", 0.2), 1.0);
+  EXPECT_GT(suspects.nats("sway_force", "yaw_moment", 0.2), 1.0);
+  EXPECT_EQ(testing::message_of<InputError>([&] { suspects.goal("th1", "force", 0.2); }),
+            "--apart: 'force' changes nothing that is known; a cause is a thruster of the log, "
+            "all_thrusters, drag, surge_drag, sway_drag, yaw_drag, load or a constant force: "
+            "surge_force, sway_force, yaw_moment");
 }
 
 vehicle::Scenario gentle_heavy() {
