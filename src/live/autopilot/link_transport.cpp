@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <iterator>
+#include <string_view>
 
 #include "autopilot/tuning.hpp"
 #include "bag/topic_columns.hpp"
@@ -94,17 +94,40 @@ std::vector<Senders::Id> named_senders(const live::Configuration& configuration)
   return named;
 }
 
-// Whether all velocities along the axes of the body are states of the model.
-bool knows_way(const live::Configuration& configuration) {
+// Velocities of the model along the axes of the body, as inputs; an empty name: none.
+std::array<std::string, 3> body_velocities(const live::Configuration& configuration) {
   const std::vector<std::string>& inputs = configuration.plan.inputs;
-  std::array<bool, 3> known{};
+  std::array<std::string, 3> names;
   for (const std::size_t state : find_states(configuration.settings.shared.states, inputs,
                                              configuration.plan.targets.size())) {
-    if (const auto axis = velocity_axis(inputs[state]); axis && *axis < known.size()) {
-      known[*axis] = true;
+    if (const auto axis = velocity_axis(inputs[state]); axis && *axis < names.size()) {
+      names[*axis] = inputs[state];
     }
   }
-  return std::ranges::all_of(known, std::identity{});
+  return names;
+}
+
+// Told to the autopilot, its filter's output would come back to the filter as a measurement.
+void refuse_filtered_velocity(const live::Configuration& configuration,
+                              const file::TomlNode& velocity) {
+  constexpr std::array<std::string_view, 6> kOfFilter{"LOCAL_POSITION_NED",
+                                                      "LOCAL_POSITION_NED_COV",
+                                                      "GLOBAL_POSITION_INT",
+                                                      "GLOBAL_POSITION_INT_COV",
+                                                      "ODOMETRY",
+                                                      "VFR_HUD"};
+  const std::array<std::string, 3> names = body_velocities(configuration);
+  for (const StreamPlan::Source& source : configuration.plan.sources) {
+    if (std::ranges::find(names, source.name) != names.end() &&
+        std::ranges::find(kOfFilter, bag::parse_column(source.from).topic) != kOfFilter.end()) {
+      velocity.refuse(fmt::format(
+          "tells velocities to the autopilot's filter, and {} is {}, what this filter makes of "
+          "them; take the velocities of the velocity log's own message, as in "
+          "\"/mavlink/255/0/VISION_POSITION_DELTA:position_delta[0]/time_delta_usec\" (system and "
+          "component of its sender), or \"none\"",
+          source.name, source.from));
+    }
+  }
 }
 
 std::string number_text(const Senders::Id& id) {
@@ -384,7 +407,11 @@ std::unique_ptr<live::Transport> open_link(const live::Configuration& configurat
         "tells measured velocities to the autopilot; from a pose a velocity is known half a window "
         "late, and reckoned until then, so leave it out or take \"none\"");
   }
-  if (settings.velocity == VelocityMessage::delta && !knows_way(configuration)) {
+  if (settings.velocity != VelocityMessage::none) {
+    refuse_filtered_velocity(configuration, table["velocity"]);
+  }
+  if (settings.velocity == VelocityMessage::delta &&
+      std::ranges::count(body_velocities(configuration), std::string()) > 0) {
     table["velocity"].refuse(
         "VISION_POSITION_DELTA tells the way ahead, to the right and down, which takes surge, sway "
         "and heave among the velocities of the model; ODOMETRY can leave one open");

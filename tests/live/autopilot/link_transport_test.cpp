@@ -234,19 +234,47 @@ TEST(Senders, WhoTakesAPlaceIsNoRival) {
   EXPECT_NE(faults_after(9.0, 3, false).find("127.0.0.1:3 is refused"), std::string::npos);
 }
 
-TEST_F(Link, TheWayOfAVelocityLogTakesAllThreeVelocities) {
-  const auto refusal = [&](const std::string& how) {
-    testing::write_text(folder_ / "x.toml",
-                        rov_config("connection = \"udp:0\"\nvelocity = \"" + how + "\""));
+// What the configuration's `velocity` is refused with, where surge comes from this field.
+class ToldVelocity : public Link {
+ protected:
+  std::string refusal(const std::string& how, const std::string& surge) {
+    std::string text = rov_config("connection = \"udp:0\"\nvelocity = \"" + how + "\"");
+    text.replace(text.find("ODOMETRY:vx"), 11, surge);
+    testing::write_text(folder_ / "x.toml", text);
     configuration_ = live::read_configuration(folder_ / "x.toml", {});
     return testing::message_of<InputError>(
         [&] { autopilot::open_link(configuration_, *configuration_.live.mavlink); });
-  };
-  EXPECT_NE(refusal("VISION_POSITION_DELTA")
-                .find("live.mavlink.velocity: VISION_POSITION_DELTA tells the way"),
+  }
+};
+
+TEST_F(ToldVelocity, TheWayOfAVelocityLogTakesAllThreeVelocities) {
+  const std::string refused = refusal("VISION_POSITION_DELTA", "/mavlink/7/197/ODOMETRY:vx");
+  EXPECT_NE(refused.find("live.mavlink.velocity: VISION_POSITION_DELTA tells the way"),
             std::string::npos)
-      << refusal("VISION_POSITION_DELTA");
-  EXPECT_EQ(refusal("ODOMETRY"), "");
+      << refused;
+  EXPECT_EQ(refusal("ODOMETRY", "/mavlink/7/197/ODOMETRY:vx"), "");
+}
+
+// A filter would be told its own output, and kelpie would never see the velocity log's outage.
+TEST_F(ToldVelocity, TheFiltersOwnVelocityIsNotToldToTheFilter) {
+  for (const std::string how : {"ODOMETRY", "VISION_POSITION_DELTA"}) {
+    for (const std::string surge :
+         {"LOCAL_POSITION_NED:vx", "GLOBAL_POSITION_INT:vx", "ODOMETRY:vx"}) {
+      const std::string refused = refusal(how, surge);
+      EXPECT_NE(refused.find("x.toml:20: live.mavlink.velocity: "), std::string::npos) << refused;
+      EXPECT_NE(refused.find("u is " + surge + ", what this filter makes"), std::string::npos)
+          << refused;
+      EXPECT_NE(refused.find("VISION_POSITION_DELTA:position_delta[0]/time_delta_usec"),
+                std::string::npos)
+          << refused;
+      EXPECT_EQ(refusal("none", surge), "");
+    }
+  }
+  for (const std::string surge :
+       {"/mavlink/255/0/VISION_POSITION_DELTA:position_delta[0]/time_delta_usec",
+        "VISION_POSITION_DELTA:position_delta[0]/time_delta_usec"}) {
+    EXPECT_EQ(refusal("ODOMETRY", surge), "");
+  }
 }
 
 TEST_F(Link, OnlyTheVehicleIsAskedAndOthersKeepTheirNames) {
