@@ -42,8 +42,8 @@ class Publisher final : public live::Output {
   void health(const live::Health& health) override;
   void event(const std::string& line) override;
 
-  /// Publishes commands for wanted accelerations, in the order of the axes of a twist; NaN: of no
-  /// interest. Returns why not; empty: published.
+  /// Publishes commands for wanted accelerations, in the order of the axes of a twist; NaN counts
+  /// as 0. Returns why not; empty: published.
   std::string allocate(std::span<const double> wanted);
 
   std::vector<std::string> mismatches() const;  ///< Of all topics, as Subscription::mismatches.

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/eigen.hpp"
@@ -12,12 +13,14 @@
 #include "kelpie/core/random.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 #include "motion/bounded_minimum.hpp"
+#include "motion/four_thrusters.hpp"
 #include "support.hpp"
 
 namespace kelpie::authority_test {
 namespace {
 
 using testing::message_of;
+using Vehicle = testing::FourThrusters;
 
 // All active sets of a small problem: each variable free, at its lower or at its upper bound.
 double least_by_trying_all(const Eigen::MatrixXd& h, const Eigen::VectorXd& g,
@@ -91,80 +94,13 @@ TEST(BoundedMinimum, IsTheLeastOfAllActiveSetsAndSatisfiesTheKktConditions) {
   }
 }
 
-// Of surge, sway and yaw with four thrusters, thrust n|n|: two at the stern, two across.
-class Vehicle {
- public:
-  explicit Vehicle(std::uint64_t seed) : random_(seed, "vehicle") {}
-
-  static constexpr std::array<std::array<double, 4>, 3> kThrust{
-      {{0.02, 0.02, 0.0, 0.0}, {0.0, 0.0, 0.03, 0.03}, {-0.02, 0.02, 0.02, -0.02}}};
-  static constexpr std::array<double, 3> kDrag{0.8, 1.2, 1.0};
-
-  // For so many seconds at 4 Hz.
-  void drive(Diagnosis& diagnosis, double seconds) {
-    for (int k = 0; k < static_cast<int>(4.0 * seconds); ++k) {
-      std::array<double, 7> x{nu_[0], nu_[1], nu_[2]};
-      for (std::size_t j = 0; j < 4; ++j) {
-        phase_[j] += 0.25 * (0.2 + 0.13 * static_cast<double>(j) + 0.1 * random_.uniform(0.0, 1.0));
-        x[3 + j] = effort * std::sin(phase_[j]);
-      }
-      std::array<double, 3> y{};
-      for (std::size_t i = 0; i < 3; ++i) {
-        y[i] = -0.2 * nu_[i] - kDrag[i] * nu_[i] * std::abs(nu_[i]);
-        for (std::size_t j = 0; j < 4; ++j) {
-          y[i] += share[j] * kThrust[i][j] * x[3 + j] * std::abs(x[3 + j]);
-        }
-      }
-      y[0] += push_m_s2 * std::cos(heading_);
-      y[1] -= push_m_s2 * std::sin(heading_);
-      heading_ += 0.25 * nu_[2];
-      for (std::size_t i = 0; i < 3; ++i) {
-        nu_[i] += 0.25 * y[i];
-        y[i] += 0.01 * random_.normal();
-      }
-      diagnosis.update(x, y, t);
-      t += 0.25;
-    }
-  }
-
-  double attainable(std::size_t axis) const {
-    double sum = 0.0;
-    for (std::size_t j = 0; j < 4; ++j) {
-      sum += 16.0 * share[j] * std::abs(kThrust[axis][j]);
-    }
-    return sum;
-  }
-
-  std::array<double, 4> share{1.0, 1.0, 1.0, 1.0};
-  double effort = 4.0;     // amplitude of the commands
-  double push_m_s2 = 0.0;  // of the water, in a direction of the world
-  double t = 0.0;
-
- private:
-  RandomStream random_;
-  std::array<double, 3> nu_{};
-  std::array<double, 4> phase_{};
-  double heading_ = 0.0;
-};
-
-Diagnosis diagnosis() {
-  return {7, {0, 1, 2}, {0, 1, 5}};
-}
-
-std::vector<CommandRange> ranges() {
-  return {{3, -4.0, 4.0}, {4, -4.0, 4.0}, {5, -4.0, 4.0}, {6, -4.0, 4.0}};
-}
-
-const std::vector<std::string> kInputs{"u", "v", "r", "th1", "th2", "th3", "th4"};
-const std::vector<std::string> kTargets{"udot", "vdot", "rdot"};
-
 TEST(Authority, OfTheWholeVehicleIsNominal) {
   Vehicle vehicle(1);
-  Diagnosis learned = diagnosis();
-  EXPECT_EQ(message_of<InputError>([&] { const Authority none(learned, ranges()); }),
+  Diagnosis learned = Vehicle::diagnosis();
+  EXPECT_EQ(message_of<InputError>([&] { const Authority none(learned, Vehicle::ranges()); }),
             "diagnosis: knows too little of the vehicle so far: it takes some minutes of driving");
   vehicle.drive(learned, 600.0);
-  const Authority authority(learned, ranges());
+  const Authority authority(learned, Vehicle::ranges());
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(authority.axes()[i].most, vehicle.attainable(i), 0.03 * vehicle.attainable(i));
     EXPECT_NEAR(authority.axes()[i].least, -vehicle.attainable(i), 0.03 * vehicle.attainable(i));
@@ -173,9 +109,12 @@ TEST(Authority, OfTheWholeVehicleIsNominal) {
                 0.05 * authority.axes()[i].most);
   }
   EXPECT_EQ(authority.lost_axis(), 3U);
-  EXPECT_EQ(authority.text({kInputs, kTargets}).find("no thruster is known to have changed"), 0U);
-  EXPECT_TRUE(authority.text({kInputs, kTargets}).ends_with(" from ahead"));
-  EXPECT_TRUE(authority.text({kInputs, kTargets}, "m/s").ends_with(" m/s from ahead"));
+  EXPECT_EQ(authority.text({Vehicle::kInputs, Vehicle::kTargets})
+                .find("no thruster is known to have changed"),
+            0U);
+  EXPECT_TRUE(authority.text({Vehicle::kInputs, Vehicle::kTargets}).ends_with(" from ahead"));
+  EXPECT_TRUE(
+      authority.text({Vehicle::kInputs, Vehicle::kTargets}, "m/s").ends_with(" m/s from ahead"));
   // 0.64 m/s² of thrust against 0.2 V + 0.8 V².
   EXPECT_NEAR(authority.held_current(), 0.78, 0.04);
   for (const ThrusterEffect& one : authority.thrusters()) {
@@ -197,12 +136,12 @@ TEST(Authority, IsThatOfTheDamagedVehicleAMinuteAfterTheChange) {
        {Damage{{0.0, 1.0, 1.0, 1.0}}, Damage{{1.0, 0.4, 1.0, 1.0}}, Damage{{1.0, 1.0, 0.8, 1.0}},
         Damage{{0.5, 1.0, 0.2, 1.0}}, Damage{{1.0, 0.6, 1.0, 0.0}}}) {
     Vehicle vehicle(seed++);
-    Diagnosis learned = diagnosis();
+    Diagnosis learned = Vehicle::diagnosis();
     vehicle.drive(learned, 600.0);
     vehicle.share = damage.share;
     for (const double seconds : {60.0, 200.0}) {  // before and after the change is settled
       vehicle.drive(learned, seconds);
-      const Authority authority(learned, ranges());
+      const Authority authority(learned, Vehicle::ranges());
       for (std::size_t i = 0; i < 3; ++i) {
         const double nominal = Vehicle(1).attainable(i);
         EXPECT_NEAR(authority.axes()[i].most, vehicle.attainable(i), 0.05 * nominal) << seconds;
@@ -219,13 +158,13 @@ TEST(Authority, IsThatOfTheDamagedVehicleAMinuteAfterTheChange) {
 TEST(Authority, AChangeWithoutANameTakesNoThrust) {
   for (const std::uint64_t seed : {40U, 41U, 42U, 43U}) {
     Vehicle vehicle(seed);
-    Diagnosis learned = diagnosis();
+    Diagnosis learned = Vehicle::diagnosis();
     vehicle.drive(learned, 600.0);
     vehicle.push_m_s2 = 0.05;
     vehicle.effort = 1.5;
     for (int round = 0; round < 60; ++round) {
       vehicle.drive(learned, 10.0);
-      const Authority authority(learned, ranges());
+      const Authority authority(learned, Vehicle::ranges());
       for (const ThrusterEffect& one : authority.thrusters()) {
         EXPECT_NEAR(one.share, 1.0, 0.1) << seed << " after " << 10 * round << " s";
       }
@@ -245,34 +184,34 @@ TEST(Authority, AChangeWithoutANameTakesNoThrust) {
 // A propeller that was blocked runs again.
 TEST(Authority, ADeadThrusterThatComesBackHasItsThrust) {
   Vehicle vehicle(45);
-  Diagnosis learned = diagnosis();
+  Diagnosis learned = Vehicle::diagnosis();
   vehicle.drive(learned, 600.0);
   for (const double share : {0.0, 1.0, 0.5}) {
     vehicle.share[2] = share;
     vehicle.drive(learned, 300.0);
-    EXPECT_NEAR(Authority(learned, ranges()).thrusters()[2].share, share, 0.06);
+    EXPECT_NEAR(Authority(learned, Vehicle::ranges()).thrusters()[2].share, share, 0.06);
   }
 }
 
 // A controller that starts anew counts its time from 0.
 TEST(Authority, ALossIsFoundWithAClockThatBeginsAnew) {
   Vehicle vehicle(44);
-  Diagnosis learned = diagnosis();
+  Diagnosis learned = Vehicle::diagnosis();
   vehicle.drive(learned, 600.0);
   vehicle.t = 0.0;
   vehicle.drive(learned, 30.0);
   vehicle.share[1] = 0.4;
   vehicle.drive(learned, 60.0);
-  EXPECT_NEAR(Authority(learned, ranges()).thrusters()[1].share, 0.4, 0.06);
+  EXPECT_NEAR(Authority(learned, Vehicle::ranges()).thrusters()[1].share, 0.4, 0.06);
 }
 
 TEST(Authority, CommandsGiveWhatIsWantedOfTheDamagedVehicle) {
   Vehicle vehicle(3);
-  Diagnosis learned = diagnosis();
+  Diagnosis learned = Vehicle::diagnosis();
   vehicle.drive(learned, 600.0);
   vehicle.share = {0.5, 1.0, 1.0, 1.0};
   vehicle.drive(learned, 60.0);
-  const Authority authority(learned, ranges());
+  const Authority authority(learned, Vehicle::ranges());
   RandomStream random(4, "wanted");
   for (int round = 0; round < 200; ++round) {
     const std::array<double, 3> wanted{random.uniform(-0.2, 0.2), random.uniform(-0.3, 0.3),
@@ -299,12 +238,12 @@ TEST(Authority, CommandsGiveWhatIsWantedOfTheDamagedVehicle) {
 
 TEST(Authority, SaysWhatIsLostInWords) {
   Vehicle vehicle(5);
-  Diagnosis learned = diagnosis();
+  Diagnosis learned = Vehicle::diagnosis();
   vehicle.drive(learned, 600.0);
   vehicle.share = {1.0, 1.0, 0.0, 0.0};
   vehicle.drive(learned, 60.0);
-  const Authority authority(learned, ranges());
-  const std::string text = authority.text({kInputs, kTargets});
+  const Authority authority(learned, Vehicle::ranges());
+  const std::string text = authority.text({Vehicle::kInputs, Vehicle::kTargets});
   EXPECT_EQ(authority.lost_axis(), 1U) << text;
   EXPECT_NE(text.find("NEARLY NO AUTHORITY left in vdot"), std::string::npos) << text;
   EXPECT_LT(authority.singular_values().back(), 0.1 * authority.nominal_singular_values().back());
@@ -312,7 +251,7 @@ TEST(Authority, SaysWhatIsLostInWords) {
 
 TEST(Authority, RefusesRangesThatAreNone) {
   Vehicle vehicle(6);
-  Diagnosis learned = diagnosis();
+  Diagnosis learned = Vehicle::diagnosis();
   vehicle.drive(learned, 400.0);
   EXPECT_EQ(message_of<InputError>([&] {
               const Authority no(learned, {{0, -1.0, 1.0}});

@@ -13,6 +13,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -117,18 +118,19 @@ class Peer {
   std::string answer(const std::string& word) {
     const auto end = std::chrono::steady_clock::now() + kPatience;
     for (;;) {
-      const std::size_t length = heard_.find('\n');
-      if (length != std::string::npos) {
-        const std::string line = heard_.substr(0, length);
-        heard_.erase(0, length + 1);
-        if (line == word || line.starts_with(word + " ")) {
-          return line.substr(std::min(line.size(), word.size() + 1));
-        }
-      } else if (std::chrono::steady_clock::now() > end || !hear()) {
+      if (const auto rest = taken(word)) {
+        return *rest;
+      }
+      if (std::chrono::steady_clock::now() > end || !hear()) {
         ADD_FAILURE() << "the peer never said " << word;
         return "";
       }
     }
+  }
+  /// The same of what it has said so far; empty: no such line.
+  std::optional<std::string> said(const std::string& word) {
+    hear(0);
+    return taken(word);
   }
   /// Whether it has said a line with this word; what it said before is dropped.
   bool has_said(const std::string& word) {
@@ -140,6 +142,16 @@ class Peer {
   void signal(int number) const { ::kill(process_, number); }
 
  private:
+  std::optional<std::string> taken(const std::string& word) {
+    for (std::size_t length = 0; (length = heard_.find('\n')) != std::string::npos;) {
+      const std::string line = heard_.substr(0, length);
+      heard_.erase(0, length + 1);
+      if (line == word || line.starts_with(word + " ")) {
+        return line.substr(std::min(line.size(), word.size() + 1));
+      }
+    }
+    return std::nullopt;
+  }
   bool hear(int milliseconds = 100) {
     pollfd ready{from_, POLLIN, 0};
     if (::poll(&ready, 1, milliseconds) <= 0) {
