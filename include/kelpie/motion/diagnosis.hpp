@@ -226,9 +226,10 @@ class Authority {
   /// most 5; NaN where no axis is surge. Speeds beyond those driven are an extrapolation.
   double held_current() const { return held_current_; }
 
-  /// "th2 gives 60 % of its thrust: udot 0.80, rdot 0.50 of nominal left; holds a current of 0.30
-  /// from ahead", in the log's unit of surge, which a speed_unit such as "m/s" names. Names in the
-  /// order of the diagnosis.
+  /// "th2 gives 60 % of its thrust: surge 0.80, yaw 0.50 of nominal left; holds a current of 0.30
+  /// m/s from ahead", in the log's unit of surge, `speed_unit`; behind "NEARLY NO AUTHORITY left in
+  /// yaw; " where lost_axis() is one. Names in the order of the diagnosis; an unknown axis is
+  /// called by its target.
   std::string text(const DiagnosisNames& names, std::string_view speed_unit = {}) const;
 
  private:
@@ -239,6 +240,7 @@ class Authority {
   std::vector<double> shares_for(std::span<const double> wanted) const;
   double command_for(std::size_t thruster, double share) const;
 
+  std::vector<std::size_t> body_axes_;
   std::vector<ThrusterEffect> thrusters_;
   std::vector<std::array<double, 2>> half_;  ///< share of full thrust at half the command, by side
   std::vector<AxisAuthority> axes_;

@@ -11,6 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/motion/diagnosis.hpp"
 #include "motion/bounded_minimum.hpp"
+#include "motion/states.hpp"
 #include "motion/tuning.hpp"
 #include "motion/wording.hpp"
 
@@ -63,7 +64,8 @@ double AxisAuthority::left() const {
   return nominal > 0.0 ? (most - least) / nominal : 1.0;
 }
 
-Authority::Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>& ranges) {
+Authority::Authority(const Diagnosis& diagnosis, const std::vector<CommandRange>& ranges)
+    : body_axes_(diagnosis.body_axes().begin(), diagnosis.body_axes().end()) {
   require(!ranges.empty(), "ranges", "have to name a thruster or more");
   require(diagnosis.knows_thrust(), "diagnosis",
           "knows too little of the vehicle so far: it takes some minutes of driving");
@@ -154,12 +156,12 @@ void Authority::find_singular_values() {
 }
 
 void Authority::find_held_current(const Diagnosis& diagnosis) {
-  const auto surge = std::ranges::find(diagnosis.body_axes(), std::size_t{0});
-  if (surge == diagnosis.body_axes().end()) {
+  const auto surge = std::ranges::find(body_axes_, std::size_t{0});
+  if (surge == body_axes_.end()) {
     held_current_ = std::numeric_limits<double>::quiet_NaN();
     return;
   }
-  const auto axis = static_cast<std::size_t>(surge - diagnosis.body_axes().begin());
+  const auto axis = static_cast<std::size_t>(surge - body_axes_.begin());
   std::vector<double> x(diagnosis.inputs());
   std::vector<double> drag(axes_.size());
   double low = 0.0;
@@ -257,6 +259,14 @@ Allocation Authority::allocate(std::span<const double> wanted) const {
 }
 
 std::string Authority::text(const DiagnosisNames& names, std::string_view speed_unit) const {
+  const auto axis_name = [&](std::size_t i) {
+    return body_axes_[i] < kAxisTexts.size() ? std::string(kAxisTexts.at(body_axes_[i]))
+                                             : names.targets[i];
+  };
+  std::string text;
+  if (lost_ < axes_.size()) {
+    text = "NEARLY NO AUTHORITY left in " + axis_name(lost_) + "; ";
+  }
   std::vector<std::string> parts;
   for (const ThrusterEffect& one : thrusters_) {
     if (std::abs(one.share - 1.0) >= kDiagnosis.least_share) {
@@ -264,20 +274,16 @@ std::string Authority::text(const DiagnosisNames& names, std::string_view speed_
                       " % of its thrust");
     }
   }
-  std::string text =
-      parts.empty() ? "no thruster is known to have changed" : join_text(parts, ", ");
+  text += parts.empty() ? "no thruster is known to have changed" : join_text(parts, ", ");
   parts.clear();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    parts.push_back(names.targets[i] + " " + text_of(axes_[i].left(), 2));
+    parts.push_back(axis_name(i) + " " + text_of(axes_[i].left(), 2));
   }
   text += ": " + join_text(parts, ", ") + " of nominal left";
   if (std::isfinite(held_current_)) {
     text += "; holds a current of " + text_of(held_current_, 2);
     text += speed_unit.empty() ? "" : " " + std::string(speed_unit);
     text += " from ahead";
-  }
-  if (lost_ < axes_.size()) {
-    text += "; NEARLY NO AUTHORITY left in " + names.targets[lost_];
   }
   return text;
 }

@@ -20,7 +20,8 @@ constexpr std::size_t kLongestName = 10;  // of NAMED_VALUE_FLOAT
 constexpr std::size_t kPiece = 50;        // of a text, in one STATUSTEXT
 constexpr std::size_t kLongestText = kTuning.pieces * kPiece;
 constexpr std::size_t kAxes = 6;
-constexpr double kNotice = 5.0;  // MAV_SEVERITY_NOTICE
+constexpr double kSeverityWarning = 4.0;  // MAV_SEVERITY_WARNING
+constexpr double kSeverityNotice = 5.0;   // MAV_SEVERITY_NOTICE
 
 // Ten letters each, without repeats.
 std::vector<std::string> short_names(const std::vector<std::string>& targets) {
@@ -184,11 +185,13 @@ void Reporter::send_delta(mavlink::FrameWriter& writer, const Send& send) {
 void Reporter::send_text(mavlink::FrameWriter& writer, const Send& send) {
   const std::string text = std::move(texts_.front());
   texts_.pop_front();
+  const double severity =
+      text.find(live::kWarning) == std::string::npos ? kSeverityNotice : kSeverityWarning;
   text_id_ =
       text.size() > kPiece ? static_cast<std::uint16_t>(text_id_ % UINT16_MAX + 1) : text_id_;
   // A last piece that fills its message has no end of its own.
   for (std::size_t at = 0, piece = 0; at == 0 || at <= text.size(); at += kPiece, ++piece) {
-    writer.begin("STATUSTEXT").set("severity", kNotice).set("text", text.substr(at, kPiece));
+    writer.begin("STATUSTEXT").set("severity", severity).set("text", text.substr(at, kPiece));
     if (text.size() <= kPiece) {
       send(writer.finish());
       return;

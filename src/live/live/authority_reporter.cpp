@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -12,11 +13,12 @@
 
 namespace kelpie::live {
 
-AuthorityReporter::AuthorityReporter(const StreamPlan& plan)
-    : plan_(&plan),
-      least_(plan.inputs.size()),
-      most_(plan.inputs.size()),
-      told_(plan.targets.size(), 1.0) {}
+AuthorityReporter::AuthorityReporter(const Configuration& configuration)
+    : plan_(&configuration.plan),
+      units_(configuration.units()),
+      least_(plan_->inputs.size()),
+      most_(plan_->inputs.size()),
+      told_(plan_->targets.size(), 1.0) {}
 
 void AuthorityReporter::observe(std::span<const double> x) {
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -37,6 +39,17 @@ std::vector<CommandRange> AuthorityReporter::ranges(const Diagnosis& diagnosis) 
   return ranges;
 }
 
+// Of surge; empty where the log does not tell.
+std::string_view AuthorityReporter::speed_unit(const Diagnosis& diagnosis) const {
+  const auto surge = std::ranges::find(diagnosis.body_axes(), std::size_t{0});
+  if (surge == diagnosis.body_axes().end()) {
+    return "";
+  }
+  const auto axis = static_cast<std::size_t>(surge - diagnosis.body_axes().begin());
+  const auto unit = units_.find(plan_->inputs[diagnosis.states()[axis]]);
+  return unit != units_.end() && unit->second == Unit::parse("m/s") ? "m/s" : "";
+}
+
 void AuthorityReporter::update(const Diagnosis* diagnosis, const Alignment& alignment, double t,
                                LearnerHealth& health, Output& output) {
   health.authority.clear();
@@ -48,9 +61,10 @@ void AuthorityReporter::update(const Diagnosis* diagnosis, const Alignment& alig
   auto known = std::make_shared<const Effectiveness>(
       Effectiveness{Authority(*diagnosis, ranges(*diagnosis)), alignment});
   const Authority& authority = known->authority;
-  const std::string text = authority.text({plan_->inputs, plan_->targets});
-  bool is_news = authority.lost_axis() != std::exchange(lost_told_, authority.lost_axis()) &&
-                 authority.lost_axis() < authority.axes().size();
+  const std::string text = authority.text({plan_->inputs, plan_->targets}, speed_unit(*diagnosis));
+  const bool is_lost = authority.lost_axis() < authority.axes().size();
+  bool is_news =
+      authority.lost_axis() != std::exchange(lost_told_, authority.lost_axis()) && is_lost;
   bool is_less = false;
   for (std::size_t i = 0; i < authority.axes().size(); ++i) {
     const double left = authority.axes()[i].left();
@@ -60,14 +74,14 @@ void AuthorityReporter::update(const Diagnosis* diagnosis, const Alignment& alig
       health.axes[i].authority = left;
     }
   }
-  health.authority = is_less || authority.lost_axis() < authority.axes().size() ? text : "";
+  health.authority = is_less || is_lost ? text : "";
   health.held_current = authority.held_current();
   health.effectiveness = std::move(known);
   if (is_news) {
     for (std::size_t i = 0; i < told_.size(); ++i) {
       told_[i] = authority.axes()[i].left();
     }
-    output.event(fmt::format("at {:.1f} s: {}", t, text));
+    output.event(fmt::format("at {:.1f} s: {}{}", t, is_lost ? kWarning : "", text));
   }
 }
 

@@ -2,14 +2,17 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/motion/diagnosis.hpp"
-#include "kelpie/stream/stream_plan.hpp"
+#include "kelpie/motion/unit.hpp"
+#include "live/configuration.hpp"
 #include "live/health.hpp"
 #include "live/output.hpp"
 
@@ -19,7 +22,8 @@ namespace kelpie::live {
 /// and an event where authority is lost or comes back. For the learning thread.
 class AuthorityReporter {
  public:
-  explicit AuthorityReporter(const StreamPlan& plan);
+  /// Requires that the configuration outlives this.
+  explicit AuthorityReporter(const Configuration& configuration);
 
   /// Widens the ranges of commands by an aligned row of inputs.
   void observe(std::span<const double> x);
@@ -31,8 +35,10 @@ class AuthorityReporter {
 
  private:
   std::vector<CommandRange> ranges(const Diagnosis& diagnosis) const;
+  std::string_view speed_unit(const Diagnosis& diagnosis) const;
 
   const StreamPlan* plan_;
+  std::map<std::string, Unit> units_;
   std::vector<double> least_, most_;  // of every input
   std::vector<double> told_;          // share left of each axis
   std::size_t lost_told_ = std::numeric_limits<std::size_t>::max();

@@ -49,7 +49,7 @@ LiveLearner::LiveLearner(const Configuration& configuration, std::filesystem::pa
       progress_(saved ? saved->progress : Progress{}),
       check_(configuration.plan, configuration.settings.shared.states),
       changes_(configuration.plan, model_->model().ready()),
-      authority_(configuration.plan),
+      authority_(configuration),
       parameters_(countdown_of(configuration)),
       score_(configuration.plan),
       predictions_(configuration.plan.targets.size()),
@@ -151,7 +151,7 @@ void LiveLearner::doubt(const std::vector<log::Mistake>& mistakes) {
   std::ranges::transform(mistakes, std::back_inserter(texts), log::mistake_text);
   progress_.doubt = join_text(texts, "; ");
   output_.event(
-      fmt::format("at {:.1f} s: WARNING: {}: {}", last_t_s_, kModelDoubtful, progress_.doubt));
+      fmt::format("at {:.1f} s: {}{}: {}", last_t_s_, kWarning, kModelDoubtful, progress_.doubt));
 }
 
 void LiveLearner::execute(Request request) {
@@ -210,7 +210,7 @@ void LiveLearner::begin_anew() {
   progress_.clock = {};
   progress_.learned = 0;
   changes_ = ChangeReporter(configuration_.plan, false);
-  authority_ = AuthorityReporter(configuration_.plan);
+  authority_ = AuthorityReporter(configuration_);
   parameters_ = countdown_of(configuration_);
   score_ = PredictionScore(configuration_.plan);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
@@ -38,6 +39,9 @@ struct ReckonedSample {
   const std::vector<std::string>& names;  ///< of the velocities, in their order
   const DeadReckoning& reckoning;
 };
+
+/// Stands in an event that asks for a pilot's attention.
+inline constexpr std::string_view kWarning = "WARNING: ";
 
 /// Receiver of a live run's results. No function may throw or wait for the network.
 class Output {

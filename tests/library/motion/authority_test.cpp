@@ -236,6 +236,7 @@ TEST(Authority, CommandsGiveWhatIsWantedOfTheDamagedVehicle) {
   EXPECT_THROW(authority.allocate(std::array{1.0, std::nan(""), 0.0}), InputError);
 }
 
+// The warning first: a pilot's screen cuts long texts.
 TEST(Authority, SaysWhatIsLostInWords) {
   Vehicle vehicle(5);
   Diagnosis learned = Vehicle::diagnosis();
@@ -243,10 +244,25 @@ TEST(Authority, SaysWhatIsLostInWords) {
   vehicle.share = {1.0, 1.0, 0.0, 0.0};
   vehicle.drive(learned, 60.0);
   const Authority authority(learned, Vehicle::ranges());
-  const std::string text = authority.text({Vehicle::kInputs, Vehicle::kTargets});
+  const std::string text = authority.text({Vehicle::kInputs, Vehicle::kTargets}, "m/s");
   EXPECT_EQ(authority.lost_axis(), 1U) << text;
-  EXPECT_NE(text.find("NEARLY NO AUTHORITY left in vdot"), std::string::npos) << text;
+  EXPECT_TRUE(text.starts_with("NEARLY NO AUTHORITY left in sway; th")) << text;
+  EXPECT_NE(text.find(": surge 1.0"), std::string::npos) << text;
+  EXPECT_NE(text.find(", sway 0.0"), std::string::npos) << text;
+  EXPECT_NE(text.find(", yaw 0.5"), std::string::npos) << text;
   EXPECT_LT(authority.singular_values().back(), 0.1 * authority.nominal_singular_values().back());
+}
+
+// Along or about an axis that no name tells.
+TEST(Authority, CallsAnUnknownAxisByItsTarget) {
+  Vehicle vehicle(7);
+  Diagnosis learned{7, {0, 1, 2}, {0, 1, Diagnosis::kUnknownAxis}};
+  vehicle.drive(learned, 600.0);
+  const Authority authority(learned, Vehicle::ranges());
+  EXPECT_NE(authority.text({Vehicle::kInputs, Vehicle::kTargets})
+                .find(": surge 1.00, sway 1.00, rdot 1.00 of nominal left"),
+            std::string::npos)
+      << authority.text({Vehicle::kInputs, Vehicle::kTargets});
 }
 
 TEST(Authority, RefusesRangesThatAreNone) {

@@ -104,6 +104,23 @@ TEST(Reporter, LongTextsComeInPiecesAndAFloodIsDropped) {
   EXPECT_TRUE(station.rov.texts.ends_with("kelpie: hull touched\n")) << station.rov.texts;
 }
 
+// A ground station shows and speaks warnings.
+TEST(Reporter, AWarningIsSentAsOne) {
+  autopilot::Reporter reporter({"udot"});
+  Station station(reporter);
+  const auto severity_of = [&](const std::string& line) {
+    reporter.event(line);
+    station.wait(2.0);
+    return station.rov.field("STATUSTEXT", "severity");
+  };
+  EXPECT_EQ(severity_of("u is silent"), 5.0);
+  EXPECT_EQ(
+      severity_of("at 60.0 s: WARNING: NEARLY NO AUTHORITY left in sway; th3 gives 0 % of its "
+                  "thrust: surge 1.00, sway 0.00 of nominal left"),
+      4.0);
+  EXPECT_EQ(severity_of("u speaks again"), 5.0);
+}
+
 // A vehicle without drag at constant speed, all of which is known.
 DeadReckoning at_speed(double u, double v, double r) {
   OpenLoop loop;

@@ -21,6 +21,7 @@
 #include "live/checkpoint.hpp"
 #include "live/mission.hpp"
 #include "live/tuning.hpp"
+#include "motion/four_thrusters.hpp"
 #include "support.hpp"
 
 namespace kelpie::engine_test {
@@ -351,7 +352,8 @@ TEST_F(Live, ADamagedThrusterLosesAuthority) {
   EXPECT_NEAR(health.learner.axes[0].authority, 0.25, 0.05);
   EXPECT_NE(health.learner.authority.find("n gives 2"), std::string::npos)
       << health.learner.authority;
-  EXPECT_NE(said_.find("of nominal left"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("of its thrust: surge 0.2"), std::string::npos) << said_;
+  EXPECT_EQ(said_.find("m/s from ahead"), std::string::npos) << said_;  // no unit is known
   // 0.25 · 0.01 · 20² m/s² ahead against 2 u² + 0.3 u.
   EXPECT_NEAR(health.learner.held_current, 0.63, 0.05);
 }
@@ -412,18 +414,46 @@ TEST_F(Live, AReplayThatWaitsForItsLearnerIsNotIdle) {
 }
 
 TEST(Authority, IsUnknownOnceItsDiagnosisIs) {
-  StreamPlan plan;
-  plan.inputs = {"u", "n"};
-  plan.targets = {"udot"};
+  live::Configuration configuration;
+  configuration.plan.inputs = {"u", "n"};
+  configuration.plan.targets = {"udot"};
   std::string said;
   Samples samples;
   Listener listener(said, samples);
   live::LearnerHealth health;
   health.authority = "u: 25 % of nominal left";
   health.held_current = 0.6;
-  live::AuthorityReporter(plan).update(nullptr, {}, 0.0, health, listener);
+  live::AuthorityReporter(configuration).update(nullptr, {}, 0.0, health, listener);
   EXPECT_EQ(health.authority, "");
   EXPECT_TRUE(std::isnan(health.held_current));
+}
+
+// A warning in the words of a pilot, in the unit that the log tells.
+TEST(Authority, ALostAxisIsAWarning) {
+  live::Configuration configuration;
+  configuration.plan.inputs = testing::FourThrusters::kInputs;
+  configuration.plan.targets = testing::FourThrusters::kTargets;
+  configuration.log.roles.units = {{"u", "m/s"}};
+  live::AuthorityReporter reporter(configuration);
+  for (const double effort : {-4.0, 4.0}) {
+    reporter.observe(std::array{0.0, 0.0, 0.0, effort, effort, effort, effort});
+  }
+  Diagnosis learned = testing::FourThrusters::diagnosis();
+  testing::FourThrusters vehicle(5);
+  std::string said;
+  Samples samples;
+  Listener listener(said, samples);
+  live::LearnerHealth health;
+  vehicle.drive(learned, 600.0);
+  reporter.update(&learned, {}, 600.0, health, listener);
+  EXPECT_EQ(said, "");
+  vehicle.share = {1.0, 1.0, 0.0, 0.0};
+  vehicle.drive(learned, 60.0);
+  reporter.update(&learned, {}, 660.0, health, listener);
+  EXPECT_TRUE(said.starts_with("at 660.0 s: WARNING: NEARLY NO AUTHORITY left in sway; th"))
+      << said;
+  EXPECT_TRUE(said.ends_with(" m/s from ahead\n")) << said;
+  EXPECT_TRUE(health.authority.starts_with("NEARLY NO AUTHORITY left in sway; ")) << said;
 }
 
 TEST_F(Live, BytesThatAreNoMessageDoNoHarm) {
