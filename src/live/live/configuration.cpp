@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "live/row_reader.hpp"
 #include "live/tuning.hpp"
 #include "log/draft.hpp"
+#include "motion/states.hpp"
 #include "study/identification.hpp"
 
 namespace kelpie::live {
@@ -112,7 +114,7 @@ ParameterSettings read_parameters(const file::TomlNode& table) {
 
 LiveSettings read_live(const file::TomlNode& live) {
   live.table({"out", "checkpoint", "align", "frozen", "record", "plotjuggler", "page", "token",
-              "status", "nominal", "block", "dds", "mavlink", "valid", "parameters"});
+              "status", "nominal", "block", "dds", "mavlink", "valid", "parameters", "heading"});
   LiveSettings settings;
   const auto text = [&](const char* key, std::string& value) {
     if (live.has(key)) {
@@ -128,6 +130,7 @@ LiveSettings read_live(const file::TomlNode& live) {
   text("record", settings.record);
   text("nominal", settings.nominal);
   text("block", settings.block);
+  text("heading", settings.heading);
   seconds("checkpoint", settings.checkpoint_s);
   seconds("status", settings.status_s);
   if (live.has("dds")) {
@@ -209,6 +212,33 @@ std::string scale_text(const StreamPlan::Source& source) {
          (source.about == 0.0 ? "" : " about " + number_text(source.about));
 }
 
+// Dead reckoning has a heading, and a current, in the plane alone.
+void check_heading(const file::TomlNode& heading, const Configuration& configuration) {
+  const StreamPlan& plan = configuration.plan;
+  const std::string& name = configuration.live.heading;
+  std::vector<std::string> names;
+  std::ranges::transform(plan.sources, std::back_inserter(names), &StreamPlan::Source::name);
+  if (std::ranges::find(names, name) == names.end()) {
+    heading.refuse("'" + name + "' is no signal of [log.states] or [log.commands]" +
+                   did_you_mean(name, names));
+  }
+  const std::map<std::string, Unit> units = configuration.units();
+  if (const auto unit = units.find(name);
+      unit != units.end() && unit->second != Unit::named("rad")) {
+    heading.refuse("'" + name + "' is in " + unit->second.text() + "; a heading is an angle");
+  }
+  constexpr std::array<std::size_t, 3> kPlane{0, 1, 5};  // surge, sway, yaw rate
+  const std::vector<std::size_t> states =
+      find_states(configuration.settings.shared.states, plan.inputs, plan.targets.size());
+  for (std::size_t i = 0; i < kPlane.size(); ++i) {
+    if (i >= states.size() || velocity_axis(plan.inputs[states[i]]) != kPlane[i]) {
+      heading.refuse(
+          "is used for vehicles in the plane, whose first three velocities are surge, sway and yaw "
+          "rate; with other axes a current is not estimated: leave the key out");
+    }
+  }
+}
+
 Configuration configuration_of(const file::TomlNode& root, const std::string& file,
                                log::LogConfig log, const std::vector<std::string>& set) {
   Configuration configuration{
@@ -218,6 +248,9 @@ Configuration configuration_of(const file::TomlNode& root, const std::string& fi
                                                  configuration.plan.targets.size());
   if (root.has("live")) {
     configuration.live = read_live(root["live"]);
+    if (!configuration.live.heading.empty()) {
+      check_heading(root["live"]["heading"], configuration);
+    }
   }
   return configuration;
 }

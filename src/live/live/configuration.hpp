@@ -52,6 +52,7 @@ struct LiveSettings {
   Frozen frozen = Frozen::skip;  ///< treatment of stuck velocities
   std::string record{};          ///< folder for recordings (MCAP); empty: none
   std::string nominal{};         ///< model.json known beforehand; empty: nothing is known
+  std::string heading{};         ///< signal of a measured heading [rad]; empty: none
   std::string block{};           ///< file of `kelpie export --live` to renew; empty: none
   std::string plotjuggler{};     ///< parse_endpoint; empty: none
   std::string page{};            ///< parse_endpoint, to listen on; empty: no page

@@ -169,7 +169,7 @@ void Engine::forward_rows() {
     ++rows_;
     row_late_s_ = has_ended_ ? row_late_s_ : receiver_.now_s() - row->t;
     if (!is_beyond) {
-      reckoning_.take_row(*row, receiver_);
+      reckoning_.take_row(*row, receiver_, outputs_);
     }
     if (!row->is_whole || is_beyond) {
       note_incomplete();

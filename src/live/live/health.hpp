@@ -80,10 +80,13 @@ struct VelocityHealth {
 /// State of dead reckoning: velocities through outages of the velocity log.
 struct ReckoningHealth {
   std::vector<VelocityHealth> velocities{};
-  double silent_s = 0.0;      ///< since the velocity log measured a velocity
-  std::string fault{};        ///< why the velocity log isn't used at present; empty: in use
-  std::size_t outages = 0;    ///< outages that have ended
-  double longest_s = 0.0;     ///< the longest of these
+  double silent_s = 0.0;    ///< since the velocity log measured a velocity
+  std::string fault{};      ///< why the velocity log isn't used at present; empty: in use
+  std::size_t outages = 0;  ///< outages that have ended
+  double longest_s = 0.0;   ///< the longest of these
+  /// Of the water over ground, in the plane [m/s]; 0: none was found. NaN: not known.
+  double current_speed = std::numeric_limits<double>::quiet_NaN();
+  double current_direction = current_speed;  ///< where it goes, as a reading of the heading [°]
   double largest_step = 0.0;  ///< of a velocity at a measurement, in standard deviations before
 };
 

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <string_view>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/seconds.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/trained_model.hpp"
@@ -20,6 +22,7 @@ namespace kelpie::live {
 namespace {
 
 constexpr std::size_t kMostStates = 6;  // of a DeadReckoning
+constexpr std::size_t kYawRate = 2;     // in the plane
 constexpr std::string_view kNoPose = "no pose is measured";
 constexpr std::string_view kLost = "an input is silent and no velocity is measured";
 
@@ -98,6 +101,7 @@ LiveReckoning::LiveReckoning(const Configuration& configuration)
       states_(find_states(configuration.settings.shared.states, configuration.plan.inputs,
                           configuration.plan.targets.size())),
       commands_(configuration.plan.inputs, configuration.plan.rate_hz, configuration.plan.gap_s),
+      heading_(configuration),
       late_(late_inputs_of(configuration.plan)),
       present_commands_(commands_),
       x_(configuration.plan.inputs.size()) {
@@ -153,19 +157,26 @@ CommandPath LiveReckoning::path() const {
 }
 
 // Other actuators give commands in other units: the model goes on from those of this sample.
-void LiveReckoning::take_sample(double t) {
+void LiveReckoning::take_sample(double t, const Receiver& receiver, Output& output) {
   if (aligned_ != model_->alignment) {
     aligned_ = model_->alignment;
     settings_.between = path();
     reckoning_->restate(x_, settings_.between);
   }
   reckoning_->update(x_, t);
+  if (!settings_.planar || !reckoning_->started()) {
+    return;
+  }
+  if (const auto heading = heading_.next(receiver, t, reckoning_->velocity(kYawRate), output)) {
+    reckoning_->measured_heading(*heading, kTuning.heading_deviation_rad);
+  }
 }
 
 void LiveReckoning::begin_anew(const Receiver& receiver) {
   restarts_ = receiver.stream().restarts();
   *reckoning_ = DeadReckoning(model_->loop, settings_);
   present_.reset();
+  heading_.begin_anew();
   based_s_ = -std::numeric_limits<double>::infinity();
   t_ = -std::numeric_limits<double>::infinity();
   asked_s_ = t_;
@@ -213,7 +224,7 @@ std::optional<ReckonedSample> LiveReckoning::update(const Receiver& receiver,
   commands_.act(x_, now_s);
   t_ = now_s;
   follow_commands(has_commands);
-  take_sample(t_);
+  take_sample(t_, receiver, output);
   if (!reckoning_->started()) {
     return std::nullopt;
   }
@@ -253,6 +264,7 @@ void LiveReckoning::follow_commands(bool has_commands) {
   } else if (t_ > held_from_s_ + kTuning.longest_hold_s) {
     *reckoning_ = DeadReckoning(model_->loop, settings_);
     present_.reset();
+    heading_.begin_anew();
     based_s_ = -std::numeric_limits<double>::infinity();
     return;
   }
@@ -263,7 +275,7 @@ void LiveReckoning::follow_commands(bool has_commands) {
   }
 }
 
-void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
+void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver, Output& output) {
   if (late_.empty() || !reckoning_) {
     return;
   }
@@ -276,7 +288,7 @@ void LiveReckoning::take_row(const SampleRow& row, const Receiver& receiver) {
     x_[input] = is_stuck ? std::numeric_limits<double>::quiet_NaN() : row.x[input];
   }
   commands_.act(x_, row.t);
-  take_sample(row.t);
+  take_sample(row.t, receiver, output);
   row_x_.assign(row.x.begin(), row.x.end());
   if (!reckoning_->started() || row.t < based_s_ + kTuning.between_poses_s) {
     return;
@@ -405,6 +417,13 @@ ReckoningHealth LiveReckoning::health() const {
     for (std::size_t i = 0; !is_lost_ && i < health.velocities.size(); ++i) {
       health.velocities[i].value = reckoning->velocity(i);
       health.velocities[i].deviation = reckoning->deviation(i);
+    }
+    if (settings_.planar && !is_lost_) {
+      const std::array<double, 2> current = reckoning->current();
+      health.current_speed = std::hypot(current[0], current[1]);
+      if (heading_.is_known(t_) && health.current_speed > 0.0) {
+        health.current_direction = heading_.reading_of(current) / kRadPerDegree;
+      }
     }
     health.silent_s = reckoning->silent_s();
     const std::string_view fault = late_.empty() ? fault_text(fault_) : kNoPose;

@@ -13,6 +13,7 @@
 #include "kelpie/model/alignment.hpp"
 #include "kelpie/navigation/dead_reckoning.hpp"
 #include "live/configuration.hpp"
+#include "live/heading_reader.hpp"
 #include "live/health.hpp"
 #include "live/output.hpp"
 #include "live/present_commands.hpp"
@@ -56,7 +57,7 @@ class LiveReckoning {
                                        Output& output);
 
   /// Takes a row of `receiver` as a measurement, where velocities come from poses. Allocates.
-  void take_row(const SampleRow& row, const Receiver& receiver);
+  void take_row(const SampleRow& row, const Receiver& receiver, Output& output);
 
   /// Places of the inputs that poses give too late for the present; empty without poses.
   std::span<const std::size_t> late_inputs() const { return late_; }
@@ -71,7 +72,7 @@ class LiveReckoning {
 
  private:
   CommandPath path() const;
-  void take_sample(double t);
+  void take_sample(double t, const Receiver& receiver, Output& output);
   bool take_velocities(const Receiver& receiver);
   std::optional<ReckonedSample> sample(const Receiver& receiver, std::int64_t received_ns,
                                        Output& output);
@@ -95,6 +96,7 @@ class LiveReckoning {
   std::shared_ptr<const ReckoningModel> model_;
   std::shared_ptr<const Alignment> aligned_;  // of the commands that reckoning_ has
   std::unique_ptr<DeadReckoning> reckoning_;
+  HeadingReader heading_;
   std::vector<std::size_t> late_;
   std::vector<double> row_x_;               // the last row's
   std::unique_ptr<DeadReckoning> present_;  // goes on from a row; null without poses

@@ -48,6 +48,12 @@ inline constexpr struct Tuning {
   double least_outage_s = 1.0;   ///< s of silence; shorter silences are usual
   double longest_hold_s = 10.0;  ///< of silent commands, until practice is of another model
 
+  // Heading
+  double heading_deviation_rad = 0.03;  ///< of a reading: 2°, a compass aboard
+  double heading_turn_rad = 1.0;        ///< of the vehicle, which tells the sense of the readings
+  double heading_ratio = 2.0;           ///< between the turns of readings and vehicle, at most
+  double longest_heading_silence_s = 60.0;  ///< until the current has no direction: a gyro drifts
+
   // Parameters (docs/howto/live.md#parameters)
   double identified_s = 1800.0;            ///< of rows that are identified: 3600 windows
   double forgotten_s = 300.0;              ///< of rows that go at a time, the oldest

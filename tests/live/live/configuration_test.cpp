@@ -118,6 +118,34 @@ TEST(LiveConfiguration, AnEarlierCheckpointGoesOnInTheUnitsOfItsLog) {
   EXPECT_NE(refusal("armed_only = true").find("log.armed_only"), std::string::npos);
 }
 
+TEST(LiveConfiguration, AHeadingIsAnAngleOfAVehicleInThePlane) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& states, const std::string& units = "") {
+    testing::write_text(folder / "x.toml",
+                        "[log]\nstates = {v = \"/a:v\", w = \"/a:w\", u = \"/a:u\", "
+                        "r = \"/a:r\", psi = \"/b:psi\"}\nrate = 10\ninputs = [" +
+                            states + "]\ntargets = [\"a\", \"b\", \"c\"]\nunits = {" + units +
+                            "}\n[log.derived]\na = \"d(u)\"\nb = \"d(v)\"\nc = \"d(r)\"\n"
+                            "[live]\nheading = \"psi\"\n");
+    return message_of<InputError>([&] { live::read_configuration(folder / "x.toml", {}); });
+  };
+  EXPECT_EQ(refusal("\"u\", \"v\", \"r\""), "");
+  EXPECT_EQ(refusal("\"u\", \"v\", \"r\"", "psi = \"deg\""), "");  // becomes rad
+  const std::string field = "x.toml:12: live.heading: ";
+  EXPECT_NE(refusal("\"u\", \"v\", \"r\"", "psi = \"m\"").find(field + "'psi' is in m;"),
+            std::string::npos);
+  const std::string other = refusal("\"u\", \"v\", \"w\"");
+  EXPECT_NE(other.find(field + "is used for vehicles in the plane"), std::string::npos) << other;
+  testing::write_text(folder / "x.toml", mission_config("", "heading = \"uu\""));
+  const std::string unknown =
+      message_of<InputError>([&] { live::read_configuration(folder / "x.toml", {}); });
+  EXPECT_NE(
+      unknown.find("live.heading: 'uu' is no signal of [log.states] or [log.commands] (did you "
+                   "mean 'u'?)"),
+      std::string::npos)
+      << unknown;
+}
+
 TEST(LiveConfiguration, AnEndpointIsAPortOrAHostAndAPort) {
   EXPECT_EQ(live::parse_endpoint("9870", "x"), (live::Endpoint{"127.0.0.1", 9870}));
   EXPECT_EQ(live::parse_endpoint("rov.local:1", "x"), (live::Endpoint{"rov.local", 1}));

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <set>
 #include <string>
 #include <thread>
@@ -15,6 +17,7 @@
 
 #include "core/seconds.hpp"
 #include "kelpie/core/error.hpp"
+#include "live/checkpoint.hpp"
 #include "live/engine.hpp"
 #include "live/mission.hpp"
 #include "live/pose_mission.hpp"
@@ -63,6 +66,7 @@ class Messages final : public live::Transport {
 struct Estimate {
   std::int64_t data_ns = 0;
   double u = 0.0;
+  double heading = 0.0;
   double deviation = 0.0;
   double silent_s = 0.0;
   double step = 0.0;
@@ -81,6 +85,7 @@ class Listener final : public live::Output {
     const DeadReckoning& reckoning = sample.reckoning;
     estimates_.push_back({.data_ns = sample.data_ns,
                           .u = reckoning.velocity(0),
+                          .heading = reckoning.heading(),
                           .deviation = reckoning.deviation(0),
                           .silent_s = reckoning.silent_s(),
                           .step = reckoning.step(),
@@ -137,7 +142,10 @@ class Reckoning : public ::testing::Test {
     list.push_back(std::make_unique<Listener>(said_, estimates_));
     outputs.use(std::move(list));
     live::Requests requests;
-    live::Engine engine(configuration, folder_.path(), transport, std::nullopt, outputs, requests);
+    live::Engine engine(
+        configuration, folder_.path(), transport,
+        goes_on_ ? live::find_checkpoint(folder_.path(), configuration) : std::nullopt, outputs,
+        requests);
     transport.is_behind = [&] { return engine.health().rows_waiting > 0; };
     engine.run([] { return live::Engine::Action::proceed; });
     return engine.health();
@@ -168,6 +176,7 @@ class Reckoning : public ::testing::Test {
   double largest_step() const { return std::ranges::max(estimates_, {}, &Estimate::step).step; }
 
   testing::TemporaryFolder folder_;
+  bool goes_on_ = false;  // with the model of the run before
   std::vector<Recorded> mission_ = little_mission(120.0);
   std::string said_;
   std::vector<Estimate> estimates_;
@@ -413,6 +422,138 @@ TEST_F(ReckoningFromPoses, WithoutCommandsTheEstimateFollowsThePoses) {
   EXPECT_GT(values.size(), 100U);
   EXPECT_EQ(health.reckoning.outages, 0U);
   EXPECT_EQ(said_.find("no pose is measured"), std::string::npos) << said_;
+}
+
+// A vehicle in the plane in a constant current, with a compass.
+class ReckoningInACurrent : public Reckoning {
+ protected:
+  static constexpr double kSpeed = 0.2;    // m/s of the water
+  static constexpr double kTowards = 2.2;  // rad, of the heading
+  static const std::vector<bag::Topic>& topics() {
+    static const std::vector<bag::Topic> topics{
+        {.name = "/dvl", .type = "geometry_msgs/msg/TwistStamped"},
+        {.name = "/thruster", .type = "geometry_msgs/msg/TwistStamped"},
+        {.name = "/compass", .type = "geometry_msgs/msg/TwistStamped"},
+    };
+    return topics;
+  }
+  static std::string config(const std::string& live, const std::string& scale = "") {
+    return "buffer = 60\nanchors = 20\n[log]\ninputs = [\"u\", \"v\", \"r\", \"n\", \"m\"]\n"
+           "targets = [\"udot\", \"vdot\", \"rdot\"]\nrate = 5\nclock = \"header\"\n"
+           "[log.states]\nu = \"/dvl:twist.linear.x\"\nv = \"/dvl:twist.linear.y\"\n"
+           "r = \"/dvl:twist.linear.z\"\npsi = \"/compass:twist.linear.x\"\n[log.commands]\n"
+           "n = \"/thruster:twist.linear.x\"\nm = \"/thruster:twist.linear.y\"\n[log.derived]\n"
+           "udot = \"d(u)\"\nvdot = \"d(v)\"\nrdot = \"d(r)\"\n" +
+           scale + "[live]\nalign = \"none\"\n" + live;
+  }
+
+  // In steps of 0.02 s: velocities at 10 Hz, commands at 5 Hz, the compass at 5 Hz, which counts
+  // with the yaw rate or against it, with noise.
+  static std::vector<Recorded> drive(double seconds, double speed, double sense = 1.0,
+                                     std::int64_t begin_ns = kBegin) {
+    RandomStream random(11, "current");
+    std::vector<Recorded> messages;
+    double u = 0.0, v = 0.0, r = 0.0, psi = 0.4, n = 0.0, m = 0.0;
+    for (int k = 0; k < static_cast<int>(50.0 * seconds); ++k) {
+      const std::int64_t stamp = begin_ns + k * (kSecond / 50);
+      const double t = 0.02 * k;
+      if (k % 10 == 0) {
+        n = 1.0 + 0.8 * std::sin(0.11 * t) + 0.5 * std::sin(0.37 * t);
+        m = 0.6 * std::sin(0.05 * t) + 0.6 * std::sin(0.23 * t) + 0.2;
+        messages.push_back({1, stamp + 1'000'000, twist_of(stamp, {n, m, 0.0})});
+      }
+      if (k % 5 == 1) {
+        messages.push_back({0, stamp + 2'000'000,
+                            twist_of(stamp, {u + 5e-3 * random.normal(), v + 5e-3 * random.normal(),
+                                             r + 2e-3 * random.normal()})});
+      }
+      if (k % 10 == 3) {
+        const double reading = std::remainder(psi + 0.02 * random.normal(), 2.0 * std::numbers::pi);
+        messages.push_back({2, stamp + 3'000'000, twist_of(stamp, {sense * reading, 0.0, 0.0})});
+      }
+      // Forces are those of the velocity through the water, which turns in the body.
+      const double cu = speed * std::cos(kTowards - psi);
+      const double cv = speed * std::sin(kTowards - psi);
+      const double ur = u - cu;
+      const double vr = v - cv;
+      u += 0.02 * (0.2 * n - 0.4 * ur * std::abs(ur) - 0.2 * ur + r * vr + r * cv);
+      v += 0.02 * (-1.2 * vr * std::abs(vr) - 0.5 * vr - r * ur - r * cu);
+      r += 0.02 * (0.3 * m - 0.8 * r - 0.3 * r * std::abs(r));
+      psi += 0.02 * r;
+    }
+    std::ranges::stable_sort(messages, {}, &Recorded::receive_ns);
+    return messages;
+  }
+  static testing::Bytes twist_of(std::int64_t stamp_ns, const std::array<double, 3>& linear) {
+    testing::CdrMessage message;
+    message.header(static_cast<std::int32_t>(stamp_ns / kSecond),
+                   static_cast<std::uint32_t>(stamp_ns % kSecond));
+    for (const double value : linear) {
+      message.add(value);
+    }
+    return message.add(0.0).add(0.0).add(0.0).bytes();
+  }
+  static double off_by(double degrees, double towards) {
+    return std::abs(std::remainder(degrees - towards * 180.0 / std::numbers::pi, 360.0));
+  }
+
+  // Later, with what was learned in calm water.
+  live::Health run_in_current(double sense) {
+    std::vector<Recorded> messages = drive(300.0, kSpeed, sense, kBegin + 1000 * kSecond);
+    std::erase_if(messages,
+                  [](const Recorded& m) { return m.topic == 0 && is_between(m, 1240, 1260); });
+    return run_as(config("heading = \"psi\"\n"), topics(), messages, false);
+  }
+  void learn_in_calm_water(double sense) {
+    run_as(config("heading = \"psi\"\n"), topics(), drive(400.0, 0.0, sense), false);
+    goes_on_ = true;
+  }
+};
+
+TEST_F(ReckoningInACurrent, FindsItInTheAxesOfTheHeading) {
+  learn_in_calm_water(1.0);
+  const live::Health health = run_in_current(1.0);
+  EXPECT_NEAR(health.reckoning.current_speed, kSpeed, 0.2 * kSpeed);
+  EXPECT_LT(off_by(health.reckoning.current_direction, kTowards), 10.0)
+      << health.reckoning.current_direction;
+}
+
+TEST_F(ReckoningInACurrent, ALogWithAHoleGivesTheHeadingsOfTheLiveRun) {
+  std::vector<Recorded> messages = drive(150.0, kSpeed);
+  const auto is_compass = [](const Recorded& m) { return m.topic == 2; };
+  const double compass =
+      velocity_of(*std::ranges::find_if(messages.rbegin(), messages.rend(), is_compass));
+  std::erase_if(messages, [](const Recorded& m) { return m.topic == 0 && is_between(m, 80, 100); });
+  run_as(config("heading = \"psi\"\n"), topics(), messages, false);
+  const std::vector<Estimate> live = estimates_;
+  ASSERT_GT(live.size(), 1000U);
+  EXPECT_NEAR(std::remainder(live.back().heading - compass, 2.0 * std::numbers::pi), 0.0, 0.1);
+  run_as(config("heading = \"psi\"\n"), topics(), messages, true);
+  EXPECT_EQ(estimates_.size(), live.size());
+  EXPECT_TRUE(estimates_ == live);
+}
+
+TEST_F(ReckoningInACurrent, ACompassThatCountsAgainstTheYawRateTellsTheDirectionAsItCounts) {
+  learn_in_calm_water(-1.0);
+  const live::Health health = run_in_current(-1.0);
+  EXPECT_NEAR(health.reckoning.current_speed, kSpeed, 0.2 * kSpeed);
+  EXPECT_LT(off_by(health.reckoning.current_direction, -kTowards), 10.0)
+      << health.reckoning.current_direction;
+}
+
+TEST_F(ReckoningInACurrent, WithoutAHeadingItHasNoDirection) {
+  const live::Health health = run_as(config(""), topics(), drive(120.0, kSpeed), false);
+  EXPECT_FALSE(std::isnan(health.reckoning.current_speed));
+  EXPECT_TRUE(std::isnan(health.reckoning.current_direction));
+  EXPECT_EQ(said_.find("isn't used as a heading"), std::string::npos) << said_;
+}
+
+TEST_F(ReckoningInACurrent, DegreesAreNotTakenForRadians) {
+  const live::Health health =
+      run_as(config("heading = \"psi\"\n", "[log.scale]\npsi = 57.29577951\n"), topics(),
+             drive(120.0, kSpeed), false);
+  EXPECT_TRUE(std::isnan(health.reckoning.current_direction));
+  EXPECT_NE(said_.find("WARNING: psi turns "), std::string::npos) << said_;
 }
 
 }  // namespace

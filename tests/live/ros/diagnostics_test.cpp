@@ -67,6 +67,18 @@ TEST(DiagnosticStatus, ALearnerThatDoesNotLearnIsAWarning) {
   EXPECT_EQ(part(health, "udot").message, "the vehicle has changed");
 }
 
+TEST(DiagnosticStatus, TheCurrentIsShown) {
+  live::Health health = well();
+  health.reckoning.current_speed = 0.25;
+  health.reckoning.current_direction = 126.0;
+  const auto values = part(health, "messages").values;
+  EXPECT_EQ(
+      std::ranges::count(values, std::pair<std::string, std::string>("current/(m/s)", "0.25")), 1);
+  EXPECT_EQ(
+      std::ranges::count(values, std::pair<std::string, std::string>("current towards/°", "126")),
+      1);
+}
+
 TEST(DiagnosticStatus, ADiskThatIsFullIsAnError) {
   live::Health health = well();
   health.learner.checkpoint_error = "no space left";

@@ -18,6 +18,7 @@ live::Health some_health(const std::string& name) {
   health.transport.lost = 2;
   health.learner.is_paused = true;
   health.learner.median_delay_ms = 500.0;
+  health.reckoning.current_speed = 0.25;
   health.learner.thrusters = {{.name = name, .lower = 0.75}};
   health.topics.push_back({.name = name, .refused = "no", .messages = 3});
   health.sources.push_back({.name = name,
@@ -68,6 +69,7 @@ TEST(Metrics, AreWhatPrometheusReads) {
         "kelpie_axis_coefficient{axis=\"u\",term=\"u\"} -1e-07\n",
         "kelpie_signal_silent_seconds{signal=\"u\"} +Inf\n",
         "kelpie_topic_refused{topic=\"u\"} 1\n", "kelpie_messages_lost_total 2\n",
+        "kelpie_current_speed 0.25\n", "kelpie_current_direction_degrees NaN\n",
         "kelpie_learning_paused 1\n", "kelpie_learning_frozen 1\n",
         "kelpie_row_delay_median_seconds 0.5\n", "kelpie_axis_outliers_total{axis=\"u\"} 0\n",
         "kelpie_thruster_share{thruster=\"u\",bound=\"lower\"} 0.75\n",
