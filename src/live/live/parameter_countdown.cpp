@@ -4,14 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/seconds.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "live/tuning.hpp"
+#include "motion/states.hpp"
 #include "study/drive_plan.hpp"
 
 namespace kelpie::live {
@@ -36,13 +39,42 @@ void require_names(const ParameterSettings& settings, const std::vector<std::str
   }
 }
 
+study::PlanarColumns columns_of(const Configuration& configuration,
+                                const std::vector<std::string>& thrusters) {
+  const log::Dataset data = without_rows(configuration);
+  const std::string& states = configuration.settings.shared.states;
+  try {
+    return study::planar_columns(data, states, thrusters);
+  } catch (const InputError& error) {
+    const auto leaves_plane = [&](std::size_t state) {
+      constexpr std::array<std::optional<std::size_t>, 3> kOut{2, 3, 4};  // heave, roll, pitch
+      return std::ranges::count(kOut, velocity_axis(data.input_names[state])) > 0;
+    };
+    if (!std::ranges::any_of(find_states(states, data.input_names, data.target_names.size()),
+                             leaves_plane)) {
+      throw;
+    }
+    throw InputError("--tell",
+                     std::string("identifies vehicles in the plane; six axes are identified from a "
+                                 "recording, by kelpie identify --vehicle FILE (") +
+                         error.what() + ")");
+  }
+}
+
+// "40 s", "3 min".
+std::string duration_text(double seconds) {
+  constexpr double kMinute = 60.0;
+  constexpr double kTens = 10.0;
+  return seconds < 2.0 * kMinute ? fmt::format("{:.0f} s", kTens * std::ceil(seconds / kTens))
+                                 : fmt::format("{:.0f} min", std::ceil(seconds / kMinute));
+}
+
 }  // namespace
 
 ParameterCountdown::ParameterCountdown(const Configuration& configuration,
                                        const ParameterSettings& settings)
     : settings_(settings),
-      columns_(study::planar_columns(without_rows(configuration),
-                                     configuration.settings.shared.states, settings.thrusters)),
+      columns_(columns_of(configuration, settings.thrusters)),
       rate_hz_(configuration.plan.rate_hz),
       identified_s_(-std::numeric_limits<double>::infinity()) {
   for (const std::size_t thruster : columns_.thrusters) {
@@ -62,6 +94,7 @@ void ParameterCountdown::begin_anew() {
   none.starts.clear();
   rows_ = std::move(none);
   found_.clear();
+  past_.clear();
   reason_ = "no rows so far";
 }
 
@@ -73,9 +106,8 @@ void ParameterCountdown::update(std::span<const double> x, double t, bool change
   if (std::abs(t - identified_s_) < kTuning.between_identifications_s) {
     return;
   }
-  identified_s_ = t;
   const std::size_t before = known();
-  identify();
+  identify(t);
   if (known() != before) {
     output.event(fmt::format("at {:.1f} s: {}", t, text()));
   }
@@ -104,7 +136,16 @@ void ParameterCountdown::forget_oldest(std::size_t gone) {
   rows_.starts.erase(again, end);
 }
 
-void ParameterCountdown::identify() {
+void ParameterCountdown::identify(double t) {
+  if (t < identified_s_) {
+    past_.clear();
+  } else if (!found_.empty()) {
+    past_.push_back({.t = identified_s_, .found = std::move(found_)});
+  }
+  while (!past_.empty() && past_.front().t < t - kTuning.told_by_s) {
+    past_.pop_front();
+  }
+  identified_s_ = t;
   found_.clear();
   try {
     PlanarFit fit = fit_planar(rows_);
@@ -122,6 +163,22 @@ void ParameterCountdown::identify() {
   } catch (const InputError& error) {
     reason_ = error.what();
   }
+}
+
+// Until the interval is as asked, by the information, 1 / interval², that the last minute brought.
+// NaN: it brought none.
+double ParameterCountdown::remaining_s(std::size_t place) const {
+  const auto information = [](double interval) { return 1.0 / (interval * interval); };
+  if (past_.empty() || past_.front().found.size() != found_.size()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double now = information(found_[place].interval);
+  const double before = information(past_.front().found[place].interval);
+  const double passed_s = identified_s_ - past_.front().t;
+  const double rate = (now - before) / passed_s;
+  return rate > 0.0 && passed_s >= 0.5 * kTuning.told_by_s
+             ? (information(settings_.percent / 100.0) - now) / rate
+             : std::numeric_limits<double>::quiet_NaN();
 }
 
 void ParameterCountdown::report(LearnerHealth& health) const {
@@ -143,11 +200,15 @@ std::string ParameterCountdown::text() const {
   const auto least = std::ranges::max_element(found_, {}, [](const ParameterHealth& one) {
     return std::isnan(one.interval) ? std::numeric_limits<double>::infinity() : one.interval;
   });
+  std::string how = std::isnan(least->interval)
+                        ? std::string("not told")
+                        : fmt::format("± {:.1f} %", 100.0 * least->interval);
+  const double left_s = remaining_s(static_cast<std::size_t>(least - found_.begin()));
+  if (left_s > 0.0 && left_s < kTuning.longest_forecast_s) {
+    how += fmt::format(" → ± {:g} % in about {}", settings_.percent, duration_text(left_s));
+  }
   return fmt::format("{} of {} parameters known to ± {:g} %; least known: {} ({})", known(),
-                     found_.size(), settings_.percent, least->name,
-                     std::isnan(least->interval)
-                         ? std::string("not told")
-                         : fmt::format("± {:.1f} %", 100.0 * least->interval));
+                     found_.size(), settings_.percent, least->name, how);
 }
 
 }  // namespace kelpie::live

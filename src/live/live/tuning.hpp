@@ -58,6 +58,8 @@ inline constexpr struct Tuning {
   double identified_s = 1800.0;            ///< of rows that are identified: 3600 windows
   double forgotten_s = 300.0;              ///< of rows that go at a time, the oldest
   double between_identifications_s = 5.0;  ///< a fit of half an hour takes 0.3 s at 20 Hz
+  double told_by_s = 60.0;                 ///< of driving, which tells how long the rest takes
+  double longest_forecast_s = 3600.0;      ///< beyond, the way of driving tells too little
 
   // Reports
   double authority_news = 0.05;  ///< of the nominal range; docs/howto/diagnosis.md
