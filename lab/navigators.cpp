@@ -15,7 +15,7 @@
 namespace kelpie::lab {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s²
+constexpr double kGravity = 9.81;                         // m/s²
 constexpr double kTilt = 0.1 * std::numbers::pi / 180.0;  // rad, of an IMU
 
 class FilterNavigator final : public Navigator {

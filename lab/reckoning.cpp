@@ -24,7 +24,7 @@ constexpr double kStill = 0.1;          // m, less than which a vehicle hasn't g
 constexpr double kReturnS = 2.0;        // of velocities after an outage, for the largest step
 constexpr double kHeardS = 2.0;         // of velocities after a cut of the log, before an outage
 constexpr double kFirstS = 300.0;       // of a drive, before outages
-constexpr double kRenewedS = 10.0;        // between models, as `kelpie live`
+constexpr double kRenewedS = 10.0;      // between models, as `kelpie live`
 constexpr double kChiSquare90 = 4.605;  // two degrees of freedom
 
 struct Outage {
@@ -85,14 +85,14 @@ double largest_step(Navigator& navigator, const log::Dataset& data, std::size_t 
 }
 
 // The inputs of a row in an outage.
-std::vector<double> lost(const log::Dataset& data, const Outage& outage, std::size_t row, Loss loss,
-                         bool yaw_rate) {
+std::vector<double> lost(const log::Dataset& data, const Outage& outage, std::size_t row,
+                         OutageKind kind, bool yaw_rate) {
   const std::span<const double> now = data.input(row);
   std::vector<double> x(now.begin(), now.end());
   for (std::size_t i = 0; i < (yaw_rate ? 2U : 3U); ++i) {
-    x[i] = loss == Loss::silent  ? std::numeric_limits<double>::quiet_NaN()
-           : loss == Loss::zeros ? 0.0
-                                 : data.input(outage.begin)[i];
+    x[i] = kind == OutageKind::silent  ? std::numeric_limits<double>::quiet_NaN()
+           : kind == OutageKind::zeros ? 0.0
+                                       : data.input(outage.begin)[i];
   }
   return x;
 }
@@ -101,7 +101,7 @@ std::vector<double> lost(const log::Dataset& data, const Outage& outage, std::si
 void go_through(const Navigator& before, const log::Dataset& data, const Outage& outage,
                 const ReckoningPlan& plan, OutageScore& score) {
   const std::unique_ptr<Navigator> navigator = before.clone();
-  const bool disguised = plan.loss != Loss::silent && before.believes().has_value();
+  const bool disguised = plan.kind != OutageKind::silent && before.believes().has_value();
   double found_s = std::numeric_limits<double>::infinity();
   study::Pose truth;
   study::Pose reckoned;
@@ -111,7 +111,7 @@ void go_through(const Navigator& before, const log::Dataset& data, const Outage&
     const std::span<const double> next = data.input(row + 1);
     const double dt_s = data.times_s[row + 1] - data.times_s[row];
     const std::vector<double> x =
-        lost(data, outage, row + 1, disguised ? plan.loss : Loss::silent, plan.yaw_rate);
+        lost(data, outage, row + 1, disguised ? plan.kind : OutageKind::silent, plan.yaw_rate);
     const double u = navigator->velocity(0);
     const double v = navigator->velocity(1);
     const double r = navigator->velocity(2);
@@ -347,9 +347,8 @@ ReckoningResult measure_reckoning(const log::Dataset& data, const study::Split& 
 ReckoningResult measure_live_reckoning(const log::Dataset& data, const ReckoningPlan& plan) {
   std::vector<std::size_t> rows(data.rows());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
-  std::erase_if(rows, [&](std::size_t row) {
-    return data.times_s[row] < data.times_s.front() + kFirstS;
-  });
+  std::erase_if(
+      rows, [&](std::size_t row) { return data.times_s[row] < data.times_s.front() + kFirstS; });
   NavigatorSet set(data, plan.settings);
   OutageStudy study(data, rows, "learned while driving", plan);
   double renewed_s = data.times_s.front();

@@ -13,7 +13,7 @@
 namespace kelpie::lab {
 
 /// What a velocity log says in an outage.
-enum class Loss {
+enum class OutageKind {
   silent,  ///< nothing
   zeros,   ///< exact zeros
   frozen,  ///< the last velocity
@@ -24,7 +24,7 @@ enum class Loss {
 struct ReckoningPlan {
   std::vector<double> outages_s{10.0, 30.0, 60.0, 120.0};
   bool yaw_rate = true;  ///< still measured in an outage
-  Loss loss = Loss::silent;
+  OutageKind kind = OutageKind::silent;
   DeadReckoningSettings settings{};
   /// Called now and then with the finished share; false stops the work.
   std::function<bool(double)> keep_going = [](double) { return true; };
@@ -37,17 +37,17 @@ struct OutageScore {
   std::size_t told = 0;             ///< outages with an error ellipse
   std::size_t inside = 0;           ///< outages that ended inside the 90 % ellipse
   std::size_t velocity_inside = 0;  ///< of `told`: within the 90 % ellipse of surge and sway
-  std::vector<double> steps;  ///< largest step of each outage's return, in standard deviations
-  std::vector<double> found_s;  ///< time until each loss in disguise was recognised; infinite: never
+  std::vector<double> steps;    ///< largest step of each outage's return, in standard deviations
+  std::vector<double> found_s;  ///< until each disguised loss was recognised; infinite: never
 };
 
 /// A navigator and its scores.
 struct NavigatorScore {
   std::string name;
   std::vector<OutageScore> outages;
-  bool checks = false;         ///< Navigator::believes()
-  std::size_t measured = 0;    ///< rows of the whole log with a measured velocity
-  std::size_t disbelieved = 0; ///< of `measured`
+  bool checks = false;          ///< Navigator::believes()
+  std::size_t measured = 0;     ///< rows of the whole log with a measured velocity
+  std::size_t disbelieved = 0;  ///< of `measured`
 };
 
 /// The outages of a log.

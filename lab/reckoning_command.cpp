@@ -151,10 +151,10 @@ void add_reckoning(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--live", options->live,
                     "the log is learned while outages pass, which lie anywhere after five minutes");
-  const std::map<std::string, Loss> losses{
-      {"silent", Loss::silent}, {"zeros", Loss::zeros}, {"frozen", Loss::frozen}};
-  command->add_option("--loss", options->plan.loss, "what the velocity log says in an outage")
-      ->transform(CLI::CheckedTransformer(losses));
+  const std::map<std::string, OutageKind> kinds{
+      {"silent", OutageKind::silent}, {"zeros", OutageKind::zeros}, {"frozen", OutageKind::frozen}};
+  command->add_option("--loss", options->plan.kind, "what the velocity log says in an outage")
+      ->transform(CLI::CheckedTransformer(kinds));
   command->add_flag_callback(
       "--no-yaw-rate", [options = options] { options->plan.yaw_rate = false; },
       "the yaw rate falls silent, too");
