@@ -32,10 +32,12 @@ enum class ControllerKind {
   adaptive,             // (d)
   reallocated,          // (e)
   learned_reallocated,  // (f)
+  predictive,           // (g)
 };
 inline constexpr std::array kControllers{
-    ControllerKind::pid,      ControllerKind::feed_forward, ControllerKind::learned,
-    ControllerKind::adaptive, ControllerKind::reallocated,  ControllerKind::learned_reallocated};
+    ControllerKind::pid,       ControllerKind::feed_forward, ControllerKind::learned,
+    ControllerKind::adaptive,  ControllerKind::reallocated,  ControllerKind::learned_reallocated,
+    ControllerKind::predictive};
 
 // The plan of a study: vehicle, seeds and lengths of the missions.
 struct ControlPlan {
@@ -81,6 +83,8 @@ std::unique_ptr<Controller> make_controller(ControllerKind kind, const NominalMo
       return make_pid(nominal, true, learned.diagnosis());
     case ControllerKind::learned_reallocated:
       return make_learned(nominal, learned, true);
+    case ControllerKind::predictive:
+      return make_predictive(nominal);
   }
   return nullptr;
 }
@@ -103,6 +107,8 @@ std::string controller_name(ControllerKind kind) {
       return "(e) nominal, re-allocated";
     case ControllerKind::learned_reallocated:
       return "(f) learned, re-allocated";
+    case ControllerKind::predictive:
+      return "(g) predictive";
   }
   return {};
 }

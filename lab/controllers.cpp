@@ -67,7 +67,9 @@ class PidController final : public Controller {
                      middle.rotors_rps(0), middle.rotors_rps(1), middle.rotors_rps(2)},
           std::array{a(0), a(1), a(2)}, middle.time_s);
     }
-    reallocation_.look(&*diagnosis_, measured.rotors_rps);
+    // The integral has gathered what the re-allocation supplies from now on.
+    const Eigen::Vector3d lost = reallocation_.look(&*diagnosis_, measured.rotors_rps);
+    pid_.hand_over(lost.cwiseQuotient(model_.mass));
   }
 
   NominalModel model_;
@@ -167,7 +169,8 @@ NominalModel::NominalModel(const vehicle::VehicleParameters& vehicle)
       linear(planar(vehicle.linear_damping)),
       quadratic(planar(vehicle.quadratic_damping)),
       thrusters{vehicle.thrusters[vehicle::kSurgeLeft], vehicle.thrusters[vehicle::kSurgeRight],
-                vehicle.thrusters[vehicle::kSway]} {
+                vehicle.thrusters[vehicle::kSway]},
+      lag_s(vehicle.rotor_lag_s) {
   for (Eigen::Index i = 0; i < 3; ++i) {
     const vehicle::Thruster& thruster = thrusters[static_cast<std::size_t>(i)];
     by_thrust.col(i) = flu_axis(thruster);
@@ -176,20 +179,27 @@ NominalModel::NominalModel(const vehicle::VehicleParameters& vehicle)
 }
 
 Eigen::Vector3d NominalModel::allocate(const Eigen::Vector3d& forces) const {
-  const Eigen::Vector3d thrusts = by_thrust.inverse() * forces;
-  Eigen::Vector3d speeds;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    speeds(i) = vehicle::speed_for_thrust(thrusters[static_cast<std::size_t>(i)], thrusts(i));
-  }
-  return speeds;
+  return speeds(by_thrust.inverse() * forces);
 }
 
 Eigen::Vector3d NominalModel::forces(const Eigen::Vector3d& speeds_rps) const {
+  return by_thrust * thrusts(speeds_rps);
+}
+
+Eigen::Vector3d NominalModel::thrusts(const Eigen::Vector3d& speeds_rps) const {
   Eigen::Vector3d thrusts;
   for (Eigen::Index i = 0; i < 3; ++i) {
     thrusts(i) = vehicle::thrust(thrusters[static_cast<std::size_t>(i)], speeds_rps(i));
   }
-  return by_thrust * thrusts;
+  return thrusts;
+}
+
+Eigen::Vector3d NominalModel::speeds(const Eigen::Vector3d& thrusts_n) const {
+  Eigen::Vector3d speeds;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    speeds(i) = vehicle::speed_for_thrust(thrusters[static_cast<std::size_t>(i)], thrusts_n(i));
+  }
+  return speeds;
 }
 
 Eigen::Vector3d NominalModel::resistance(const Eigen::Vector3d& velocity) const {

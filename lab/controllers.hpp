@@ -75,6 +75,9 @@ struct NominalModel {
   Eigen::Vector3d allocate(const Eigen::Vector3d& forces) const;
   /// Forces and moment of rotor speeds.
   Eigen::Vector3d forces(const Eigen::Vector3d& speeds_rps) const;
+  /// Thrust of each rotor at its speed [N], and speeds for thrusts, within their limits.
+  Eigen::Vector3d thrusts(const Eigen::Vector3d& speeds_rps) const;
+  Eigen::Vector3d speeds(const Eigen::Vector3d& thrusts_n) const;
   /// Coriolis and drag forces at a velocity.
   Eigen::Vector3d resistance(const Eigen::Vector3d& velocity) const;
 
@@ -84,6 +87,7 @@ struct NominalModel {
   std::array<vehicle::Thruster, 3> thrusters;
   Eigen::Matrix3d by_thrust;  ///< forces by thrusts
   Eigen::Vector3d most_rps;
+  double lag_s;  ///< of the rotors
 };
 
 /// The deviation from the reference, in the body frame.
@@ -111,6 +115,11 @@ class Pid {
   Eigen::Vector3d update(const TrackingError& error, double dt_s);
   /// Takes the last step of the integral back, after saturated thrusters.
   void saturated() { sum_ = before_; }
+  /// Takes an acceleration out of the integral, as far as the integral holds this acceleration:
+  /// another part of the controller supplies it from now on.
+  void hand_over(const Eigen::Vector3d& acceleration) {
+    sum_ -= acceleration.cwiseMax(sum_.cwiseMin(0.0)).cwiseMin(sum_.cwiseMax(0.0));
+  }
 
  private:
   PidGains gains_;
@@ -138,6 +147,12 @@ std::unique_ptr<Controller> make_pid(const NominalModel& model, bool feed_forwar
 /// (d) Slotine and Li's adaptive law: masses, drag, coupling and a constant force per axis are
 /// adapted from their nominal values.
 std::unique_ptr<Controller> make_adaptive(const NominalModel& model);
+
+/// (g) Model predictive control on the nominal model with its rotors' lag and limits: 3 s ahead,
+/// the reference continued by its accelerations, solved as a quadratic program linearised along the
+/// last plan. A Kalman filter estimates pose, velocity and a constant force beside the model, and
+/// bridges outages.
+std::unique_ptr<Controller> make_predictive(const NominalModel& model);
 
 /// Accelerations: the slope of the least-squares line through the last measurements, an odd number,
 /// at the time of the middle measurement.

@@ -103,6 +103,7 @@ class LearnedController final : public Controller {
       const Eigen::Vector3d lost = reallocation_.look(model_.diagnosis(), rotors);
       observed_ += lost;
       correction_ -= lost;
+      pid_.hand_over(lost.cwiseQuotient(nominal_.mass));
     }
   }
 

@@ -4,8 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "vehicle/parameters.hpp"
-
 namespace kelpie::lab {
 namespace {
 
@@ -49,12 +47,7 @@ Eigen::Vector3d Reallocation::allocate(const Eigen::Vector3d& forces) const {
 }
 
 Eigen::Vector3d Reallocation::forces(const Eigen::Vector3d& speeds_rps) const {
-  Eigen::Vector3d thrusts;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    thrusts(i) = shares_(i) *
-                 vehicle::thrust(nominal_.thrusters[static_cast<std::size_t>(i)], speeds_rps(i));
-  }
-  return nominal_.by_thrust * thrusts;
+  return nominal_.by_thrust * shares_.cwiseProduct(nominal_.thrusts(speeds_rps));
 }
 
 }  // namespace kelpie::lab

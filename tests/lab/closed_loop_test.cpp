@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -53,6 +54,32 @@ TEST(ClosedLoop, TheNominalVehicleFollowsUnderEveryController) {
   EXPECT_LT(pid, 0.03);
   EXPECT_LT(fly(vehicle, mission, *make_pid(nominal, true)).before, 0.3 * pid);
   EXPECT_LT(fly(vehicle, mission, *make_adaptive(nominal)).before, 0.5 * pid);
+  EXPECT_LT(fly(vehicle, mission, *make_predictive(nominal)).before, 0.003);
+}
+
+// Metres away its thrusters are at their limits, never beyond.
+TEST(PredictiveControl, KeepsTheLimitsOfTheThrusters) {
+  const NominalModel nominal(dagon());
+  const std::unique_ptr<Controller> controller = make_predictive(nominal);
+  double fullest = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::Vector3d commands = controller->update(
+        {.pose = {20.0, -5.0, 2.0}}, {.time_s = 0.1 * k, .rotors_rps = 0.5 * nominal.most_rps});
+    ASSERT_TRUE((commands.cwiseAbs().array() <= nominal.most_rps.array() + 1e-9).all());
+    fullest = std::max(fullest, (commands.cwiseAbs().cwiseQuotient(nominal.most_rps)).maxCoeff());
+  }
+  EXPECT_GT(fullest, 0.99);
+}
+
+// A current turns by 90 degrees, which the model doesn't know: no offset is left.
+TEST(PredictiveControl, HoldsItsPlaceInACurrent) {
+  const vehicle::VehicleParameters vehicle = dagon();
+  const std::unique_ptr<Controller> controller = make_predictive(NominalModel(vehicle));
+  const MissionErrors flown =
+      fly(vehicle, {.path = PathKind::station, .mishap = Mishap::current, .times = kShort},
+          *controller);
+  EXPECT_LT(flown.during, 0.01);
+  EXPECT_LT(flown.after, 0.003);
 }
 
 // A model that knows nothing leaves the vehicle to the nominal one.
@@ -79,6 +106,22 @@ TEST(ClosedLoop, AnOutageIsBridged) {
   const MissionErrors flown = fly(vehicle, mission, *make_pid(nominal, true));
   EXPECT_LT(flown.during, 0.1);
   EXPECT_LT(flown.after, 0.1);
+}
+
+// Within the first minute no further away than without, since no jump of the commands comes with
+// the diagnosis; from then on less than half as far.
+TEST(ClosedLoop, ReallocationMakesUpForALostThruster) {
+  const vehicle::VehicleParameters vehicle = dagon();
+  const NominalModel nominal(vehicle);
+  const DynamicsModel model = commissioned(vehicle, 600.0, 1001);
+  for (const PathKind path : {PathKind::lawn_mower, PathKind::figure_of_eight}) {
+    const Mission mission{.path = path, .mishap = Mishap::thruster};
+    const MissionErrors plain = fly(vehicle, mission, *make_pid(nominal, true));
+    const MissionErrors reallocated =
+        fly(vehicle, mission, *make_pid(nominal, true, model.diagnosis()));
+    EXPECT_LT(reallocated.during, 1.02 * plain.during) << path_name(path);
+    EXPECT_LT(reallocated.after, 0.5 * plain.after) << path_name(path);
+  }
 }
 
 // In a current the thrusters are whole: with a diagnosis the vehicle follows as well as without.
