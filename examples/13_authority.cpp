@@ -7,7 +7,7 @@
 // Prints:
 //   found at 243 s: n2 gives 50.1 % of its thrust (49.7 to 50.5 %)
 //   shares left: n1 1.00, n2 0.50
-//   n2 gives 50 % of its thrust: udot 0.75, rdot 0.75 of nominal left,
+//   n2 gives 50 % of its thrust: surge 0.75, yaw 0.75 of nominal left,
 //     holds a current of 1.24 m/s from ahead
 //   wanted   allocated      n1    n2   expected [m/s², rad/s²]   missing   reached [m/s², rad/s²]
 //   0.8, 0   before        6.31  6.33    0.80  0.00               0 %        0.59  0.19

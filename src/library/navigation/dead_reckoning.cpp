@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -42,10 +43,16 @@ struct Estimate {
 struct Hypothesis {
   VelocityFilter filter;
   Practice practice;
+  bool keeps = false;  ///< the model, until a later model is clearly better
 
   Hypothesis(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s,
              double wander)
       : filter(model, with(settings, current_m_s, wander)), practice(filter, settings.practice_s) {}
+
+  void use(const OpenLoop& model) {
+    filter.use(model);
+    practice.use(model);
+  }
 
   static DeadReckoningSettings with(DeadReckoningSettings settings, double current_m_s,
                                     double wander) {
@@ -58,7 +65,8 @@ struct Hypothesis {
 }  // namespace
 
 struct DeadReckoning::State {
-  std::vector<Hypothesis> hypotheses;  ///< without a current, with a constant, a wandering one
+  /// Without a current, with a constant, a wandering current; a wandering current and a kept model.
+  std::vector<Hypothesis> hypotheses;
   std::size_t believed = 0;
   DeadReckoningSettings settings;
   VelocityCheck check;
@@ -88,6 +96,10 @@ struct DeadReckoning::State {
     }
     if (current && given.current_wander > 0.0) {
       hypotheses.emplace_back(model, given, given.current_m_s, given.current_wander);
+    }
+    if (current && choice) {
+      hypotheses.push_back(hypotheses.back());
+      hypotheses.back().keeps = true;
     }
   }
 
@@ -216,12 +228,12 @@ struct DeadReckoning::State {
         settings.planar && !heard && measured.count == 1 && measured.which[0] == 2;
     const bool lost = t - heard_s > std::max(kNavigationTuning.check.longest_gap_s, dt_s) && !heard;
     double least_off = std::numeric_limits<double>::infinity();
-    for (auto& [one, practice] : hypotheses) {
+    for (auto& [one, practice, keeps] : hypotheses) {
       one.predict(sample, dt_s, practice.factor());
     }
     time_s = std::max(time_s, t);
     const Estimate before = estimate();
-    for (auto& [one, practice] : hypotheses) {
+    for (auto& [one, practice, keeps] : hypotheses) {
       if (gyro_alone) {
         one.take(2, values(0), noise(0, 0));
       } else if (measured.count > 0) {
@@ -233,7 +245,7 @@ struct DeadReckoning::State {
     const bool apart = complete && least_off > kChoice.cut;
     apart_share += kChoice.apart_memory * ((apart ? 1.0 : 0.0) - apart_share);
     const bool cut = apart && apart_share < kChoice.most_apart;
-    for (auto& [one, practice] : hypotheses) {
+    for (auto& [one, practice, keeps] : hypotheses) {
       practice.follow(one, sample, dt_s, complete && !cut, lost || cut);
       if (heard && one.planar()) {
         one.forget_position();
@@ -276,15 +288,34 @@ struct DeadReckoning::State {
     }
   }
 
+  // A model learned in a current takes the current for dynamics, and the filter would count the
+  // current twice: beside the later models an earlier model stays, until practice prefers the later.
+  void use(const OpenLoop& model) {
+    for (Hypothesis& one : hypotheses) {
+      if (!one.keeps) {
+        one.use(model);
+      }
+    }
+    if (hypotheses.back().keeps) {
+      const Hypothesis& renewed = *std::prev(hypotheses.end(), 2);
+      if (is_better(renewed.practice, hypotheses.back().practice, kChoice.better)) {
+        hypotheses.back() = renewed;
+        hypotheses.back().keeps = true;
+      }
+    }
+  }
+
+  static bool is_better(const Practice& one, const Practice& other, double enough) {
+    return std::min(one.judged(), other.judged()) >= kChoice.least_scored &&
+           one.error() < enough * other.error();
+  }
+
   // Whichever was less off in practice; a richer one has to be a good deal better, since a few
   // outages tell little.
   void believe() {
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-      const Practice& held = hypotheses[believed].practice;
-      const Practice& other = hypotheses[i].practice;
       const double enough = i > believed ? kChoice.better : 1.0;
-      if (std::min(held.judged(), other.judged()) >= kChoice.least_scored &&
-          other.error() < enough * held.error()) {
+      if (is_better(hypotheses[i].practice, hypotheses[believed].practice, enough)) {
         believed = i;
       }
     }
@@ -359,16 +390,13 @@ void DeadReckoning::use(const OpenLoop& model) {
   const OpenLoop& old = state_->filter().model();
   require_size("seen", model.seen.size(), old.seen.size());
   require(model.states == old.states, "states", "have to be those of the first model");
-  for (auto& [filter, practice] : state_->hypotheses) {
-    filter.use(model);
-    practice.use(model);
-  }
+  state_->use(model);
 }
 
 void DeadReckoning::restate(std::span<const double> x, CommandPath between) {
   require_size("x", x.size(), state_->filter().model().seen.size());
   state_->settings.between = between;
-  for (auto& [filter, practice] : state_->hypotheses) {
+  for (auto& [filter, practice, keeps] : state_->hypotheses) {
     filter.restate(x, between);
     practice.restate(x, between);
   }
@@ -385,7 +413,7 @@ void DeadReckoning::measured_heading(double heading, double deviation) {
     state_->first_heading_variance = variance;
     return;
   }
-  for (auto& [filter, practice] : state_->hypotheses) {
+  for (auto& [filter, practice, keeps] : state_->hypotheses) {
     const double now = filter.mean()(filter.heading());
     const double value = now + wrapped(heading - now);
     if (is_first) {
