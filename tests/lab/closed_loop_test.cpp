@@ -124,6 +124,19 @@ TEST(ClosedLoop, ReallocationMakesUpForALostThruster) {
   }
 }
 
+// The current has set in four minutes before position and velocities fall silent for a minute: the
+// model learned meanwhile has taken the current for dynamics.
+TEST(ClosedLoop, KnowsTheCurrentThroughAnOutage) {
+  const vehicle::VehicleParameters vehicle = dagon();
+  const NominalModel nominal(vehicle);
+  const DynamicsModel model = commissioned(vehicle, 600.0, 1001);
+  for (const PathKind path : {PathKind::lawn_mower, PathKind::figure_of_eight}) {
+    const Mission mission{.path = path, .mishap = Mishap::outage_current};
+    const MissionErrors learned = fly(vehicle, mission, *make_learned(nominal, model));
+    EXPECT_LT(learned.during, 0.15) << path_name(path);  // m; 0.08 m/s for a minute is 4.8 m
+  }
+}
+
 // In a current the thrusters are whole: with a diagnosis the vehicle follows as well as without.
 TEST(ClosedLoop, ReallocationDoesNoHarmInACurrent) {
   const vehicle::VehicleParameters vehicle = dagon();

@@ -89,10 +89,10 @@ struct Drift {
 /// Calibration: while velocities are measured, outages are simulated in parallel, and the process
 /// noise is set so that the predicted covariance matches the errors at the end of the outages
 /// (noise_factor()); the ellipse of drift() and the covariance of velocities are widened by age as
-/// practised outages ask. Three
-/// filters run: without a current, with a constant current, with a random walk. From the fifth
-/// outage on, the filter with the least error is used; a richer hypothesis needs less than 0.7 of
-/// the error of a simpler hypothesis.
+/// practised outages ask. Four filters run: without a current, with a constant current, with a
+/// random walk, and with a random walk and an earlier model (use()). From the fifth outage on, the
+/// filter with the least error is used; a richer hypothesis needs less than 0.7 of the error of a
+/// simpler hypothesis.
 ///
 /// Velocities stay within the range seen in learning and in measurements, widened by half its
 /// width.
@@ -125,7 +125,9 @@ class DeadReckoning {
   void measured_heading(double heading, double deviation);
 
   /// Goes on with another model of the same inputs and velocities, such as a later state of a
-  /// learner: estimate, practice and current stay. Allocates. Throws InputError on other inputs or
+  /// learner: estimate, practice and current stay. A model learned in a current takes the current
+  /// for dynamics, so one filter stays with an earlier model until a later model's error in
+  /// practice is below 0.7 of the earlier model's. Allocates. Throws InputError on other inputs or
   /// velocities.
   void use(const OpenLoop& model);
 

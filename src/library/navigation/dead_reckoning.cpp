@@ -289,7 +289,8 @@ struct DeadReckoning::State {
   }
 
   // A model learned in a current takes the current for dynamics, and the filter would count the
-  // current twice: beside the later models an earlier model stays, until practice prefers the later.
+  // current twice: beside the later models an earlier model stays, until practice prefers the
+  // later.
   void use(const OpenLoop& model) {
     for (Hypothesis& one : hypotheses) {
       if (!one.keeps) {

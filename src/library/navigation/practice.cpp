@@ -16,6 +16,7 @@ namespace {
 constexpr const auto& kPractice = kNavigationTuning.practice;
 
 constexpr double kCoverage = 0.9;
+constexpr double kLeastSquare = 1e-12;  // of an error, against the logarithm of 0
 
 // What a sum of so many squared standard normal values stays below in nine of ten cases (Wilson and
 // Hilferty 1931).
@@ -179,6 +180,7 @@ void Practice::judge(const VelocityFilter& teacher, std::span<const double> x) {
   const Eigen::Index values = scored_.size();
   VelocityFilter::Vector off(values);
   VelocityFilter::Matrix expected(values, values);
+  double noise = way_variance_;
   if (pupil_.planar()) {
     const Eigen::Index first = pupil_.position();
     off = pupil_.mean().segment(first, values) - way_;
@@ -186,6 +188,7 @@ void Practice::judge(const VelocityFilter& teacher, std::span<const double> x) {
     expected.diagonal().array() += way_variance_;
   } else {
     off = pupil_.mean()(scored_) - teacher.mean()(scored_);
+    noise = teacher.covariance()(scored_, scored_).trace();
     expected = pupil_.covariance()(scored_, scored_) + teacher.covariance()(scored_, scored_);
   }
   const double square = off.dot(VelocityFilter::Vector(expected.ldlt().solve(off)));
@@ -197,7 +200,8 @@ void Practice::judge(const VelocityFilter& teacher, std::span<const double> x) {
   judge_velocities(x);
   if (next_ == 1) {
     ++judged_;
-    error_ += std::max(1.0 / static_cast<double>(judged_), kPractice.share) * (off.norm() - error_);
+    const double share = std::max(1.0 / static_cast<double>(judged_), kPractice.share);
+    log_error_ += share * (0.5 * std::log(off.squaredNorm() + noise + kLeastSquare) - log_error_);
     factor_ *= std::exp(kPractice.gain * (square > edge ? kCoverage : kCoverage - 1.0));
     factor_ = std::clamp(factor_, kPractice.least_factor, kPractice.most_factor);
   }

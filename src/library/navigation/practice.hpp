@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -45,8 +46,10 @@ class Practice {
   /// The same on the standard deviations of the velocities.
   double velocity_widening(double age_s) const { return factor_at(speeds_, age_s); }
 
-  int judged() const { return judged_; }   ///< Outages so far.
-  double error() const { return error_; }  ///< Mean error at the end of outages.
+  int judged() const { return judged_; }  ///< Outages so far.
+  /// Geometric mean of the errors at the end of outages and the noise of their measurement: a
+  /// single outage far off says little of the next.
+  double error() const { return std::exp(log_error_); }
 
  private:
   static constexpr std::size_t kAges = 3;
@@ -82,7 +85,7 @@ class Practice {
   Sizes speeds_;  ///< the same of velocities
   double factor_ = 1.0;
   int judged_ = 0;
-  double error_ = 0.0;
+  double log_error_ = 0.0;
 };
 
 }  // namespace kelpie

@@ -26,12 +26,13 @@ constexpr double kStepS = 0.25;
 constexpr double kDrag = 0.2;  // 1/s
 
 // Of surge, sway, yaw rate and three commands: ν̇ = −drag ν + command, of which all is known.
-OpenLoop linear_vehicle(double error = 0.01) {
+OpenLoop linear_vehicle(double error = 0.01, double drag = kDrag, double surge_push = 0.0) {
   OpenLoop loop;
-  loop.accelerations = [](std::span<const double> x, std::span<double> a) {
+  loop.accelerations = [=](std::span<const double> x, std::span<double> a) {
     for (std::size_t i = 0; i < 3; ++i) {
-      a[i] = -kDrag * x[i] + x[3 + i];
+      a[i] = -drag * x[i] + x[3 + i];
     }
+    a[0] += surge_push;
   };
   loop.states = {0, 1, 2};
   loop.error = {error, error, 0.1 * error};
@@ -61,9 +62,9 @@ class Water {
       const double u = velocity[0];
       const double v = velocity[1];
       const double r = velocity[2];
-      velocity[0] += dt * (-kDrag * (u - ahead) + command_[0] + pushed_[0] + r * across);
-      velocity[1] += dt * (-kDrag * (v - across) + command_[1] + pushed_[1] - r * ahead);
-      velocity[2] += dt * (-kDrag * r + command_[2]);
+      velocity[0] += dt * (-drag * (u - ahead) + command_[0] + pushed_[0] + r * across);
+      velocity[1] += dt * (-drag * (v - across) + command_[1] + pushed_[1] - r * ahead);
+      velocity[2] += dt * (-drag * r + command_[2]);
       position[0] += dt * (c * u - s * v);
       position[1] += dt * (s * u + c * v);
       heading += dt * r;
@@ -73,6 +74,8 @@ class Water {
     }
     time_s_ += kStepS;
   }
+
+  void set_current(const std::array<double, 2>& current) { current_ = current; }
 
   // As measured; silent: the yaw rate alone.
   std::array<double, 6> sample(bool silent) {
@@ -87,6 +90,7 @@ class Water {
   std::array<double, 3> velocity{};
   std::array<double, 2> position{};
   double heading = 0.0;
+  double drag = kDrag;
 
  private:
   std::array<double, 2> current_;
@@ -136,7 +140,7 @@ TEST(DeadReckoning, FindsACurrentThatNothingElseExplains) {
   Water water({0.25, -0.2}, 0.0, 6);
   DeadReckoning reckoning(linear_vehicle(0.0002));
   DeadReckoning without(linear_vehicle(0.0002), {.current_m_s = 0.0});
-  for (int k = 0; k < 1200; ++k) {
+  for (int k = 0; k < 1600; ++k) {
     water.advance();
     const std::array<double, 6> x = water.sample(false);
     reckoning.update(x, water.time_s());
@@ -619,6 +623,42 @@ OpenLoop vehicle_of_pulses() {
     loop.seen[i] = {loop.seen[i].low + kRest, loop.seen[i].high + kRest};
   }
   return loop;
+}
+
+// Later models have taken the current for a push and less drag, as learned over ground.
+TEST(DeadReckoning, ACurrentThatBeginsIsNotCountedTwice) {
+  Water water({0.0, 0.0}, 0.002, 8);
+  DeadReckoning reckoning(linear_vehicle());
+  DeadReckoning spoiled(linear_vehicle(0.01, 0.12, 0.02));
+  follow(reckoning, water, 120.0, false);
+  water.set_current({0.15, -0.1});
+  for (int k = 0; k < 60; ++k) {
+    for (int step = 0; step < 40; ++step) {
+      water.advance();
+      const std::array<double, 6> x = water.sample(false);
+      reckoning.update(x, water.time_s());
+      spoiled.update(x, water.time_s());
+    }
+    reckoning.use(linear_vehicle(0.01, 0.12, 0.02));
+  }
+  EXPECT_NEAR(reckoning.current()[0], 0.15, 0.05);
+  EXPECT_NEAR(reckoning.current()[1], -0.1, 0.05);
+  const double off = off_after(reckoning, water, 60.0);
+  EXPECT_LT(off, 1.0);
+  EXPECT_LT(off, 0.5 * off_after(spoiled, water, 60.0));
+}
+
+// The other way round: the vehicle has changed, and the later models know.
+TEST(DeadReckoning, AVehicleThatChangesIsFollowedByTheLaterModels) {
+  Water water({0.0, 0.0}, 0.002, 9);
+  DeadReckoning reckoning(linear_vehicle());
+  follow(reckoning, water, 300.0, false);
+  water.drag = 0.4;
+  for (int k = 0; k < 30; ++k) {
+    follow(reckoning, water, 10.0, false);
+    reckoning.use(linear_vehicle(0.01, 0.4));
+  }
+  EXPECT_LT(off_after(reckoning, water, 60.0), 0.3);
 }
 
 TEST(DeadReckoning, CommandsInOtherUnitsMakeNoStep) {
