@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long it takes from a message of the vehicle until `kelpie live` has predicted from it, there
-// and back by DDS: ros_latency KELPIE RATE SECONDS. The vehicle sends its odometry and its forces
-// at that rate each, three axes are learned at 10 Hz, and all is recorded.
+// How long it takes from a message of the vehicle until `kelpie live` has predicted from the
+// message, and has told the vehicle's velocity, there and back by DDS: ros_latency KELPIE RATE
+// SECONDS. The vehicle sends its odometry and its forces at that rate each, three axes are learned
+// at 10 Hz, and all is recorded.
 
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <utility>
+#include <vector>
 
 #include "bag/cdr.hpp"
 #include "bag/message_builder.hpp"
@@ -100,6 +104,9 @@ std::int64_t stamp_of(const std::vector<std::byte>& cdr) {
   return sec * std::int64_t{1'000'000'000} + nanosec;
 }
 
+constexpr std::size_t kPredictions = 0;
+constexpr std::size_t kVelocities = 1;
+
 class Vehicle {
  public:
   Vehicle()
@@ -108,7 +115,10 @@ class Vehicle {
         wrench_(participant_, "/thrust", "geometry_msgs/msg/WrenchStamped"),
         predictions_(participant_, "/kelpie/prediction",
                      "geometry_msgs/msg/AccelWithCovarianceStamped", dds::Quality::standard(),
-                     queue_, 0) {}
+                     queue_, kPredictions),
+        velocities_(participant_, "/kelpie/velocity",
+                    "geometry_msgs/msg/TwistWithCovarianceStamped", dds::Quality::standard(),
+                    queue_, kVelocities) {}
 
   // Drives for so long, and takes times where asked to.
   void drive(double rate, double seconds, bool measures) {
@@ -128,7 +138,11 @@ class Vehicle {
   }
 
   std::size_t sent() const { return sent_; }
-  std::vector<double>& times_ms() { return times_ms_; }
+  // Sorted.
+  const std::vector<double>& times_ms(std::size_t topic) {
+    std::ranges::sort(times_ms_[topic]);
+    return times_ms_[topic];
+  }
 
  private:
   void send(bool measures) {
@@ -155,7 +169,8 @@ class Vehicle {
     for (auto now = Clock::now(); now < until; now = Clock::now()) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - now);
       if (queue_.pop(message_, std::min(left, std::chrono::milliseconds(1))) && measures) {
-        times_ms_.push_back(1e-6 * double(message_.receive_ns - stamp_of(message_.cdr)));
+        times_ms_[message_.topic].push_back(1e-6 *
+                                            double(message_.receive_ns - stamp_of(message_.cdr)));
       }
     }
   }
@@ -168,6 +183,7 @@ class Vehicle {
   dds::Publication odometry_;
   dds::Publication wrench_;
   dds::Subscription predictions_;
+  dds::Subscription velocities_;
   bag::MessageBuilder odometry_message_ = builder("nav_msgs/msg/Odometry");
   bag::MessageBuilder wrench_message_ = builder("geometry_msgs/msg/WrenchStamped");
   testing::Swimming vehicle_;
@@ -175,7 +191,7 @@ class Vehicle {
   std::int64_t count_ = 0;
   dds::TopicSample message_;
   std::size_t sent_ = 0;
-  std::vector<double> times_ms_;
+  std::array<std::vector<double>, 2> times_ms_;
 };
 
 int measure(const std::string& program, double rate, double seconds) {
@@ -185,21 +201,22 @@ int measure(const std::string& program, double rate, double seconds) {
   const double before_s = kelpie.computed_s();
   vehicle.drive(rate, seconds, true);
   const double computed_s = kelpie.computed_s() - before_s;
-  std::vector<double>& times = vehicle.times_ms();
   const int code = kelpie.stop();
-  if (times.empty() || code != 0) {
-    std::printf("no predictions came, or kelpie failed (%d)\n", code);
-    return 1;
+  std::printf("%g Hz, %zu messages, %.1f %% of a core\n", rate, vehicle.sent(),
+              100.0 * computed_s / (seconds + 0.5));
+  for (const auto& [topic, name] :
+       {std::pair{kPredictions, "predictions"}, std::pair{kVelocities, "velocities"}}) {
+    const std::vector<double>& times = vehicle.times_ms(topic);
+    if (times.empty() || code != 0) {
+      std::printf("no %s came, or kelpie failed (%d)\n", name, code);
+      return 1;
+    }
+    const auto at = [&](double part) {
+      return times[static_cast<std::size_t>(part * double(times.size() - 1))];
+    };
+    std::printf("%zu %s: median %.3f ms, p99 %.3f, most %.3f\n", times.size(), name, at(0.5),
+                at(0.99), times.back());
   }
-  std::ranges::sort(times);
-  const auto at = [&](double part) {
-    return times[static_cast<std::size_t>(part * double(times.size() - 1))];
-  };
-  std::printf(
-      "%g Hz, %zu messages: %zu predictions, median %.3f ms, p99 %.3f, most %.3f; %.1f %% "
-      "of a core\n",
-      rate, vehicle.sent(), times.size(), at(0.5), at(0.99), times.back(),
-      100.0 * computed_s / (seconds + 0.5));
   return 0;
 }
 
