@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 namespace testing = kelpie::testing;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kWarmUpS = 15.0;
+constexpr double kWarmUpS = 60.0;  // until the equations of motion are known
 constexpr std::chrono::milliseconds kAfterwards{
     500};  // shorter than what [log] takes for a silence
 
