@@ -130,7 +130,7 @@ void Practice::take_rates(std::span<const double> x) {
   for (Eigen::Index i = 0; i < pupil_.velocities(); ++i) {
     const auto state = static_cast<std::size_t>(i);
     const double value = x[pupil_.model().states[state]];
-    if (!pupil_.is_of_log(i) && !(pupil_.planar() && i == 2) && std::isfinite(value)) {
+    if (!pupil_.is_of_log(i) && (!pupil_.planar() || i != 2) && std::isfinite(value)) {
       const double noise = pupil_.model().noise[state];
       pupil_.correct(std::array{i}, VelocityFilter::Vector::Constant(1, value),
                      VelocityFilter::Matrix::Constant(
