@@ -4,19 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "study/open_loop_study.hpp"
+#include "vehicle/parameters.hpp"
 
 namespace kelpie::lab {
 namespace {
 
-constexpr double kGravity = 9.81;                         // m/s²
-constexpr double kTilt = 0.1 * std::numbers::pi / 180.0;  // rad, of an IMU
+constexpr double kTilt = 0.1 * kRadPerDegree;  // rad, of an IMU
 
 class FilterNavigator final : public Navigator {
  public:
@@ -138,7 +138,7 @@ class ImuNavigator final : public Navigator {
   void draw_tilt(double time_s) {
     RandomStream random(static_cast<std::uint64_t>(std::llround(1000.0 * time_s)), "tilt");
     for (std::size_t axis = 0; axis < gravity_.size(); ++axis) {
-      gravity_[axis] = kGravity * kTilt * random.normal();
+      gravity_[axis] = vehicle::kGravity * kTilt * random.normal();
       before_[axis] += gravity_[axis];
     }
   }

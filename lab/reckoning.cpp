@@ -161,11 +161,14 @@ class OutageStudy {
 
   // The next row, and copies of the navigators through the outages that begin there.
   void take(std::size_t row, const std::vector<NamedNavigator>& navigators) {
-    for (const NamedNavigator& one : navigators) {
-      one.navigator->update(sensed(data_, row));
-      NavigatorScore& score = score_of(one);
-      ++score.measured;
-      score.disbelieved += score.checks && !*one.navigator->believes() ? 1 : 0;
+    if (result_.scores.empty()) {
+      begin_scores(navigators);
+    }
+    for (std::size_t i = 0; i < navigators.size(); ++i) {
+      Navigator& navigator = *navigators[i].navigator;
+      navigator.update(sensed(data_, row));
+      ++result_.scores[i].measured;
+      result_.scores[i].disbelieved += navigator.believes().value_or(true) ? 0 : 1;
     }
     for (; next_ < outages_.size() && outages_[next_].begin <= row; ++next_) {
       for (std::size_t i = 0; outages_[next_].begin == row && i < navigators.size(); ++i) {
@@ -184,18 +187,14 @@ class OutageStudy {
   const ReckoningResult& result() const { return result_; }
 
  private:
-  NavigatorScore& score_of(const NamedNavigator& one) {
-    const auto found = std::ranges::find(result_.scores, one.name, &NavigatorScore::name);
-    if (found != result_.scores.end()) {
-      return *found;
+  void begin_scores(const std::vector<NamedNavigator>& navigators) {
+    for (const NamedNavigator& one : navigators) {
+      NavigatorScore& score = result_.scores.emplace_back();
+      score.name = one.name;
+      for (const double seconds : plan_.outages_s) {
+        score.outages.push_back({.seconds = seconds, .errors = {}, .steps = {}, .found_s = {}});
+      }
     }
-    NavigatorScore& score = result_.scores.emplace_back();
-    score.name = one.name;
-    score.checks = one.navigator->believes().has_value();
-    for (const double seconds : plan_.outages_s) {
-      score.outages.push_back({.seconds = seconds, .errors = {}, .steps = {}, .found_s = {}});
-    }
-    return score;
   }
 
   const log::Dataset& data_;
@@ -269,7 +268,7 @@ chart::TextTable result_table(const ReckoningResult& result) {
       add_shares(table, navigator, "largest step on return",
                  [](const OutageScore& score) { return largest_of(score.steps); });
     }
-    if (navigator.outages.front().found_s.size() > 0) {
+    if (!navigator.outages.front().found_s.empty()) {
       add_shares(table, navigator, "loss found, median s",
                  [](const OutageScore& score) { return found_quantile(score, 0.5); });
       add_shares(table, navigator, "longest s",

@@ -45,9 +45,8 @@ struct OutageScore {
 struct NavigatorScore {
   std::string name;
   std::vector<OutageScore> outages;
-  bool checks = false;          ///< Navigator::believes()
-  std::size_t measured = 0;     ///< rows of the whole log with a measured velocity
-  std::size_t disbelieved = 0;  ///< of `measured`
+  std::size_t measured = 0;     ///< rows of the log that the navigator followed
+  std::size_t disbelieved = 0;  ///< of `measured`: the navigator did not believe surge or sway
 };
 
 /// The outages of a log.

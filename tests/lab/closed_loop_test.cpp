@@ -108,12 +108,18 @@ TEST(ClosedLoop, AnOutageIsBridged) {
   EXPECT_LT(flown.after, 0.1);
 }
 
+// After a commissioning drive of the nominal vehicle, which takes seconds: driven once.
+const DynamicsModel& commissioned_model() {
+  static const DynamicsModel model = commissioned(dagon(), 600.0, 1001);
+  return model;
+}
+
 // Within the first minute no further away than without, since no jump of the commands comes with
 // the diagnosis; from then on less than half as far.
 TEST(ClosedLoop, ReallocationMakesUpForALostThruster) {
   const vehicle::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
-  const DynamicsModel model = commissioned(vehicle, 600.0, 1001);
+  const DynamicsModel& model = commissioned_model();
   for (const PathKind path : {PathKind::lawn_mower, PathKind::figure_of_eight}) {
     const Mission mission{.path = path, .mishap = Mishap::thruster};
     const MissionErrors plain = fly(vehicle, mission, *make_pid(nominal, true));
@@ -129,7 +135,7 @@ TEST(ClosedLoop, ReallocationMakesUpForALostThruster) {
 TEST(ClosedLoop, KnowsTheCurrentThroughAnOutage) {
   const vehicle::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
-  const DynamicsModel model = commissioned(vehicle, 600.0, 1001);
+  const DynamicsModel& model = commissioned_model();
   for (const PathKind path : {PathKind::lawn_mower, PathKind::figure_of_eight}) {
     const Mission mission{.path = path, .mishap = Mishap::outage_current};
     const MissionErrors learned = fly(vehicle, mission, *make_learned(nominal, model));
@@ -142,7 +148,7 @@ TEST(ClosedLoop, ReallocationDoesNoHarmInACurrent) {
   const vehicle::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const Mission mission{.path = PathKind::lawn_mower, .mishap = Mishap::current};
-  const DynamicsModel model = commissioned(vehicle, 600.0, 1001);
+  const DynamicsModel& model = commissioned_model();
   const MissionErrors plain = fly(vehicle, mission, *make_learned(nominal, model));
   const MissionErrors reallocated = fly(vehicle, mission, *make_learned(nominal, model, true));
   EXPECT_LT(plain.after, 0.02);

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -43,7 +43,6 @@ struct Estimate {
 struct Hypothesis {
   VelocityFilter filter;
   Practice practice;
-  bool keeps = false;  ///< the model, until a later model is clearly better
 
   Hypothesis(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s,
              double wander)
@@ -67,6 +66,7 @@ struct Hypothesis {
 struct DeadReckoning::State {
   /// Without a current, with a constant, a wandering current; a wandering current and a kept model.
   std::vector<Hypothesis> hypotheses;
+  bool keeps_model = false;  ///< the last hypothesis, until a later model is clearly better
   std::size_t believed = 0;
   DeadReckoningSettings settings;
   VelocityCheck check;
@@ -99,7 +99,7 @@ struct DeadReckoning::State {
     }
     if (current && choice) {
       hypotheses.push_back(hypotheses.back());
-      hypotheses.back().keeps = true;
+      keeps_model = true;
     }
   }
 
@@ -228,12 +228,12 @@ struct DeadReckoning::State {
         settings.planar && !heard && measured.count == 1 && measured.which[0] == 2;
     const bool lost = t - heard_s > std::max(kNavigationTuning.check.longest_gap_s, dt_s) && !heard;
     double least_off = std::numeric_limits<double>::infinity();
-    for (auto& [one, practice, keeps] : hypotheses) {
+    for (auto& [one, practice] : hypotheses) {
       one.predict(sample, dt_s, practice.factor());
     }
     time_s = std::max(time_s, t);
     const Estimate before = estimate();
-    for (auto& [one, practice, keeps] : hypotheses) {
+    for (auto& [one, practice] : hypotheses) {
       if (gyro_alone) {
         one.take(2, values(0), noise(0, 0));
       } else if (measured.count > 0) {
@@ -245,7 +245,7 @@ struct DeadReckoning::State {
     const bool apart = complete && least_off > kChoice.cut;
     apart_share += kChoice.apart_memory * ((apart ? 1.0 : 0.0) - apart_share);
     const bool cut = apart && apart_share < kChoice.most_apart;
-    for (auto& [one, practice, keeps] : hypotheses) {
+    for (auto& [one, practice] : hypotheses) {
       practice.follow(one, sample, dt_s, complete && !cut, lost || cut);
       if (heard && one.planar()) {
         one.forget_position();
@@ -292,17 +292,13 @@ struct DeadReckoning::State {
   // current twice: beside the later models an earlier model stays, until practice prefers the
   // later.
   void use(const OpenLoop& model) {
-    for (Hypothesis& one : hypotheses) {
-      if (!one.keeps) {
-        one.use(model);
-      }
+    const std::size_t renewed = hypotheses.size() - (keeps_model ? 1 : 0);
+    for (Hypothesis& one : std::span(hypotheses).first(renewed)) {
+      one.use(model);
     }
-    if (hypotheses.back().keeps) {
-      const Hypothesis& renewed = *std::prev(hypotheses.end(), 2);
-      if (is_better(renewed.practice, hypotheses.back().practice, kChoice.better)) {
-        hypotheses.back() = renewed;
-        hypotheses.back().keeps = true;
-      }
+    if (keeps_model &&
+        is_better(hypotheses[renewed - 1].practice, hypotheses.back().practice, kChoice.better)) {
+      hypotheses.back() = hypotheses[renewed - 1];
     }
   }
 
@@ -397,7 +393,7 @@ void DeadReckoning::use(const OpenLoop& model) {
 void DeadReckoning::restate(std::span<const double> x, CommandPath between) {
   require_size("x", x.size(), state_->filter().model().seen.size());
   state_->settings.between = between;
-  for (auto& [filter, practice, keeps] : state_->hypotheses) {
+  for (auto& [filter, practice] : state_->hypotheses) {
     filter.restate(x, between);
     practice.restate(x, between);
   }
@@ -414,7 +410,7 @@ void DeadReckoning::measured_heading(double heading, double deviation) {
     state_->first_heading_variance = variance;
     return;
   }
-  for (auto& [filter, practice, keeps] : state_->hypotheses) {
+  for (auto& [filter, practice] : state_->hypotheses) {
     const double now = filter.mean()(filter.heading());
     const double value = now + wrapped(heading - now);
     if (is_first) {

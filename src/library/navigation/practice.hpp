@@ -13,7 +13,7 @@ namespace kelpie {
 
 /// Simulated outages: a second filter runs without the velocities of the log (a gyro goes on) for a
 /// while; its error at the end sets the process noise so that nine in ten errors lie within the
-/// 90 % ellipse. One outage in four lasts three times as long, and a quarter of an
+/// 90 % ellipse. Every second outage lasts three times as long, and a quarter of an
 /// outage is scored, too: for each of the three ages, the ellipse is widened as the last 24 outages
 /// ask, as the bands of rollouts are (conformal_bound()). The way is that of the measured
 /// velocities, since teacher and pupil share the teacher's error.

@@ -21,8 +21,8 @@ class HeadingReader {
   explicit HeadingReader(const Configuration& configuration);
 
   /// The reading at or before `t` [s] that is newer than the last one, turned on to `t` by the
-  /// `yaw_rate` [rad/s], with its sign. Empty: there is none, or its sense isn't known so far. An
-  /// event of `output` tells a signal that turns much faster than the vehicle: no rad.
+  /// `yaw_rate` [rad/s], with its sign. Empty: no newer reading, or the sense of readings isn't
+  /// known so far. An event of `output` names a signal that turns much faster than the vehicle.
   std::optional<double> next(const Receiver& receiver, double t, double yaw_rate, Output& output);
 
   /// Readings of a clock that was set count from now on; the sense stays.

@@ -127,12 +127,12 @@ class Peer {
       }
     }
   }
-  /// The same of what it has said so far; empty: no such line.
+  /// The same of the lines that the peer has said so far; empty: no such line.
   std::optional<std::string> said(const std::string& word) {
     hear(0);
     return taken(word);
   }
-  /// Whether it has said a line with this word; what it said before is dropped.
+  /// Whether the peer has said this word as a line; the lines before are dropped then.
   bool has_said(const std::string& word) {
     hear(0);
     const std::size_t at = ("\n" + heard_).find("\n" + word + "\n");
