@@ -11,7 +11,10 @@ log_name=dagon_config1.csv
 log_url=https://github.com/MichalTesnar/mystery
 log_sha256=e613d84e8e5db3c0213faeb1ee7cda6a944dcdbbe63e554560acbffd840e43b3
 
-scripts/build.sh release kelpie_cli kelpie_lab
+# A folder that ./test.sh has built already keeps `kelpie live` and all else.
+preset=main
+if grep -qs '^KELPIE_BUILD_LIVE:BOOL=ON' build/release/CMakeCache.txt; then preset=release; fi
+scripts/build.sh $preset kelpie_cli kelpie_lab
 kelpie=build/release/kelpie
 
 log=

@@ -17,41 +17,46 @@ function(kelpie_optimise target level)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}>)
 endfunction()
 
-# kelpie_join_sources(TARGET): with KELPIE_JOIN_SOURCES, compiles all sources of a target as one
-# unit, because most compile time goes into headers that the sources share. Every source still
-# includes what it uses: the preset `debug` compiles the sources one by one.
+# kelpie_join_sources(TARGET [SOURCES]): with KELPIE_JOIN_SOURCES, compiles all sources of a target as
+# one unit, or as units of so many sources, because most compile time goes into headers that the
+# sources share; a unit takes at most 1 GB of memory. Every source still includes what it uses: the
+# preset `debug` compiles the sources one by one.
 function(kelpie_join_sources target)
   if(KELPIE_JOIN_SOURCES)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-    # In kB: a tenth of GCC's time went into collecting garbage. The largest units, `motion` and
-    # `study`, take 2.5 to 2.9 GB.
-    target_compile_options(${target} PRIVATE
-      $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
+    set(most 0)
+    if(ARGC GREATER 1)
+      set(most ${ARGV1})
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${most})
   endif()
 endfunction()
 
 # kelpie_join_rooms(TARGET "room room..." ...): the same for rooms of the current building; the
-# rooms of one list, which need the same foreign headers, form one unit.
+# rooms of one list, which need the same foreign headers, form one unit. A source of a later list, by
+# name (room/part*), leaves the unit of an earlier one.
 function(kelpie_join_rooms target)
   kelpie_join_sources(${target})
   if(KELPIE_JOIN_SOURCES)
     set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
     foreach(rooms IN LISTS ARGN)
-      string(REPLACE " " "_" group "${rooms}")
+      string(MAKE_C_IDENTIFIER "${rooms}" group)
       separate_arguments(rooms)
       foreach(room IN LISTS rooms)
-        file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp")
+        if(NOT room MATCHES "/")
+          string(APPEND room "/*")
+        endif()
+        file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${room}.cpp")
         set_source_files_properties(${sources} PROPERTIES UNITY_GROUP "${group}")
       endforeach()
     endforeach()
   endif()
 endfunction()
 
-# kelpie_library(TARGET [PRIVATE] ROOMS room...): a library of all sources in the rooms of the current
-# building, which other targets of the tree include by room ("log/csv.hpp"). PRIVATE: not installed,
-# and always static.
+# kelpie_library(TARGET [PRIVATE|OBJECT] ROOMS room...): a library of all sources in the rooms of the
+# current building, which other targets of the tree include by room ("log/csv.hpp"). PRIVATE: not
+# installed, and always static. OBJECT: rooms of another library, with options of their own.
 function(kelpie_library name)
-  cmake_parse_arguments(arg "PRIVATE" "" "ROOMS" ${ARGN})
+  cmake_parse_arguments(arg "PRIVATE;OBJECT" "" "ROOMS" ${ARGN})
   set(sources)
   foreach(room IN LISTS arg_ROOMS)
     file(GLOB room_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp")
@@ -60,6 +65,8 @@ function(kelpie_library name)
   set(kind)
   if(arg_PRIVATE)
     set(kind STATIC)
+  elseif(arg_OBJECT)
+    set(kind OBJECT)
   endif()
   add_library(${name} ${kind} ${sources})
   set_target_properties(${name} PROPERTIES

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Where `cmake --install` puts files, and how other projects find them. Components: development (the
 # libraries kelpie and kelpie-logs, headers, files for CMake and pkg-config), runtime (the command,
-# manual, completions, scenarios, vehicles), service (the service of `kelpie live`), mpi (the plug-in
-# for many machines), lab (kelpie-lab; in no Debian package), and, for Debian alone, python.
+# manual, completions, scenarios, vehicles), service (the service of `kelpie live`), lab
+# (kelpie-lab; in no Debian package), and, for Debian alone, python.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kelpie")
@@ -44,11 +44,6 @@ if(KELPIE_BUILD_TOOLS)
           DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie/slurm")
   install(TARGETS kelpie_fmu COMPONENT runtime LIBRARY
           DESTINATION "${CMAKE_INSTALL_LIBDIR}/kelpie")
-  if(TARGET kelpie_mpi)
-    install(TARGETS kelpie_mpi COMPONENT mpi LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/kelpie")
-    install(PROGRAMS scripts/slurm/kelpie-study.sbatch COMPONENT mpi
-            DESTINATION "${CMAKE_INSTALL_DATADIR}/kelpie/slurm")
-  endif()
   if(KELPIE_BUILD_LIVE)  # harmless without systemd
     install(FILES "${CMAKE_CURRENT_LIST_DIR}/kelpie-live@.service" DESTINATION lib/systemd/system
             COMPONENT service)

@@ -22,14 +22,14 @@ if(EXISTS "${KELPIE_LIBRARY_SCRIPT}")
 endif()
 string(CONCAT page_assets "// Made by cmake/PageAssets.cmake.\n"
        "#include \"chart/page_assets.hpp\"\n#include \"format/c_templates.hpp\"\n"
-       "#include \"vehicle/dagon.hpp\"\n\n")
+       "#include \"simulator/dagon.hpp\"\n\n")
 foreach(name IN ITEMS PageStyle FigureScript LiveScript LibraryScript LibraryStyle LibraryLicence
         ModelEvaluator ModelCurve ModelBlock Dagon)
   set(room chart)
   if(name MATCHES "^Model")
     set(room format)
   elseif(name STREQUAL "Dagon")
-    set(room vehicle)
+    set(room simulator)
   endif()
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" file "${name}")
   string(TOUPPER "KELPIE_${file}" file)

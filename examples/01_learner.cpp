@@ -11,7 +11,7 @@
 #include <cstdio>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/learner/online_svr.hpp"
+#include "kelpie/svr/online_svr.hpp"
 
 int main() {
   constexpr int kSamples = 2000;

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "toy_vehicle.hpp"
 
 namespace {

@@ -13,9 +13,9 @@
 #include "lab/commands.hpp"
 #include "lab/diagnosis_study.hpp"
 #include "log/dataset.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -67,9 +67,9 @@ struct BenchmarkArguments {
   std::string out;
 };
 
-std::vector<vehicle::Configuration> configurations_of(const Drive& drive,
-                                                      const vehicle::Scenario& scenario) {
-  std::vector<vehicle::Configuration> found(1);
+std::vector<simulator::Configuration> configurations_of(const Drive& drive,
+                                                        const simulator::Scenario& scenario) {
+  std::vector<simulator::Configuration> found(1);
   if (drive.of[0] != '\0') {
     const std::vector<DiagnosisCase> cases = diagnosis_cases(scenario.vehicle);
     const auto at = std::ranges::find_if(cases, [&](const DiagnosisCase& one) {
@@ -81,9 +81,9 @@ std::vector<vehicle::Configuration> configurations_of(const Drive& drive,
 }
 
 // Rows of a run that begins at rest, after the table's rows.
-void append_run(log::Table& table, const vehicle::Scenario& run, std::size_t configuration,
+void append_run(log::Table& table, const simulator::Scenario& run, std::size_t configuration,
                 std::size_t number) {
-  log::Table rows = study::log_table(vehicle::simulate(run), table.source);
+  log::Table rows = study::log_table(simulator::simulate(run), table.source);
   const auto begin = static_cast<double>(number) * (kRunSeconds + kBetweenRunsSeconds);
   std::ranges::for_each(rows.columns[0], [&](double& time_s) { time_s += begin; });
   std::ranges::fill(rows.columns[1], static_cast<double>(configuration));
@@ -100,8 +100,8 @@ void append_run(log::Table& table, const vehicle::Scenario& run, std::size_t con
 }
 
 // Columns t, conf, u, v, r, th1, th2, th3, accelerations, true accelerations, run.
-log::Table drive_log(const Drive& drive, const vehicle::Scenario& scenario, std::uint64_t seed) {
-  const std::vector<vehicle::Configuration> configurations = configurations_of(drive, scenario);
+log::Table drive_log(const Drive& drive, const simulator::Scenario& scenario, std::uint64_t seed) {
+  const std::vector<simulator::Configuration> configurations = configurations_of(drive, scenario);
   std::vector<std::size_t> stretches(configurations.size());
   std::ranges::generate(stretches, [next = std::size_t{0}]() mutable { return next++; });
   if (drive.returns) {
@@ -112,7 +112,7 @@ log::Table drive_log(const Drive& drive, const vehicle::Scenario& scenario, std:
   std::size_t number = 0;
   for (const std::size_t configuration : stretches) {
     for (std::size_t i = 0; i < kRuns; ++i, ++number) {
-      vehicle::Scenario run = scenario;
+      simulator::Scenario run = scenario;
       run.seed = seed * 1000 + number;
       run.configurations = {configurations[configuration]};
       run.phases = {{.duration_s = kRunSeconds}};
@@ -122,7 +122,8 @@ log::Table drive_log(const Drive& drive, const vehicle::Scenario& scenario, std:
   return table;
 }
 
-std::string manifest_of(const Drive& drive, const vehicle::Scenario& scenario, std::uint64_t seed) {
+std::string manifest_of(const Drive& drive, const simulator::Scenario& scenario,
+                        std::uint64_t seed) {
   std::string text = fmt::format(
       "\n[[data]]  # {}\nname = \"{}\"\nfiles = [\"{}.csv\"]\n"
       "inputs = [\"u\", \"v\", \"r\", \"th1\", \"th2\", \"th3\"]\n"
@@ -141,8 +142,8 @@ std::string manifest_of(const Drive& drive, const vehicle::Scenario& scenario, s
 
 void run_benchmark(const BenchmarkArguments& options) {
   const std::string file = scenario_file(options.scenario, "diagnosis.toml");
-  const vehicle::Scenario scenario = vehicle::read_scenario(file);
-  in_file(file, [&] { vehicle::require_plane(scenario.vehicle); });
+  const simulator::Scenario scenario = simulator::read_scenario(file);
+  in_file(file, [&] { simulator::require_plane(scenario.vehicle); });
   std::string manifest =
       "# SPDX-License-Identifier: Apache-2.0\n# Simulated drives for kelpie.benchmark.\n";
   std::vector<std::string> names{"simulated.toml"};

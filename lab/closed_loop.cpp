@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "lab/controllers.hpp"
-#include "vehicle/excitation.hpp"
-#include "vehicle/frames.hpp"
-#include "vehicle/sensors.hpp"
-#include "vehicle/simulator.hpp"
+#include "simulator/excitation.hpp"
+#include "simulator/frames.hpp"
+#include "simulator/sensors.hpp"
+#include "simulator/simulator.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -26,16 +26,16 @@ constexpr double kPositionNoise = 0.005;  // m
 constexpr double kHeadingNoise = 0.002;   // rad
 constexpr std::int64_t kControlTicks = 10;
 
-vehicle::Configuration configuration_of(Mishap mishap) {
-  vehicle::Configuration configuration;
+simulator::Configuration configuration_of(Mishap mishap) {
+  simulator::Configuration configuration;
   if (mishap == Mishap::thruster || mishap == Mishap::outage_thruster) {
-    configuration.effectiveness(vehicle::kSurgeRight) = 0.5;
+    configuration.effectiveness(simulator::kSurgeRight) = 0.5;
   } else if (mishap == Mishap::weak_thruster) {
-    configuration.effectiveness(vehicle::kSurgeRight) = 0.2;
+    configuration.effectiveness(simulator::kSurgeRight) = 0.2;
   } else if (mishap == Mishap::payload) {
     configuration.damping_factor.setConstant(1.3);
     configuration.payload.mass_kg = 20.0;
-    configuration.payload.buoyancy_n = 20.0 * vehicle::kGravity;
+    configuration.payload.buoyancy_n = 20.0 * simulator::kGravity;
     configuration.payload.position_m = {0.2, 0.0, 0.0};
   }
   return configuration;
@@ -48,37 +48,37 @@ Eigen::Vector3d current_towards(double direction) {
 // The simulator seen in the plane, FLU.
 class Swimming {
  public:
-  Swimming(const vehicle::VehicleParameters& vehicle, std::uint64_t seed)
+  Swimming(const simulator::VehicleParameters& vehicle, std::uint64_t seed)
       : vehicle_(vehicle),
-        simulator_(vehicle, vehicle::make_plant(vehicle, {}), current_, vehicle::State{}),
-        sensors_(vehicle::noise_preset("as_recorded"), seed),
+        simulator_(vehicle, simulator::make_plant(vehicle, {}), current_, simulator::State{}),
+        sensors_(simulator::noise_preset("as_recorded"), seed),
         noise_(seed, "position") {}
 
   void become(Mishap mishap) {
-    simulator_.set_plant(vehicle::make_plant(vehicle_, configuration_of(mishap)));
+    simulator_.set_plant(simulator::make_plant(vehicle_, configuration_of(mishap)));
   }
 
   void set_current(const Eigen::Vector3d& current, Mishap mishap) {
     current_ = current;
     simulator_ =
-        vehicle::Simulator(vehicle_, vehicle::make_plant(vehicle_, configuration_of(mishap)),
-                           current_, simulator_.state());
+        simulator::Simulator(vehicle_, simulator::make_plant(vehicle_, configuration_of(mishap)),
+                             current_, simulator_.state());
   }
 
   Pose2 pose() const {
-    const vehicle::State& state = simulator_.state();
+    const simulator::State& state = simulator_.state();
     const Eigen::Matrix3d to_world = state.attitude.toRotationMatrix();
     return {state.position_m.x(), -state.position_m.y(),
             -std::atan2(to_world(1, 0), to_world(0, 0))};
   }
 
   Sensed sense(bool silent = false) {
-    const vehicle::State& state = simulator_.state();
+    const simulator::State& state = simulator_.state();
     const double x = kPositionNoise * noise_.normal();
     const double y = kPositionNoise * noise_.normal();
     return {.time_s = static_cast<double>(periods_) * kControlPeriodS,
             .pose = pose() + Pose2(x, y, kHeadingNoise * noise_.normal()),
-            .velocity = sensors_.measure(vehicle::planar_flu(state.velocity)),
+            .velocity = sensors_.measure(simulator::planar_flu(state.velocity)),
             .rotors_rps = state.rotors_rps.head<3>(),
             .silent = silent};
   }
@@ -91,10 +91,10 @@ class Swimming {
   }
 
  private:
-  const vehicle::VehicleParameters& vehicle_;
+  const simulator::VehicleParameters& vehicle_;
   Eigen::Vector3d current_ = Eigen::Vector3d::Zero();
-  vehicle::Simulator simulator_;
-  vehicle::VelocitySensors sensors_;
+  simulator::Simulator simulator_;
+  simulator::VelocitySensors sensors_;
   RandomStream noise_;
   std::int64_t periods_ = 0;
 };
@@ -188,7 +188,7 @@ bool has_outage(Mishap mishap) {
          mishap == Mishap::outage_current;
 }
 
-MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& mission,
+MissionErrors fly(const simulator::VehicleParameters& vehicle, const Mission& mission,
                   Controller& controller) {
   Swimming swimming(vehicle, mission.seed);
   MissionPath path(mission.path);
@@ -238,11 +238,11 @@ MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& miss
   return result;
 }
 
-DynamicsModel commissioned(const vehicle::VehicleParameters& vehicle, double seconds,
+DynamicsModel commissioned(const simulator::VehicleParameters& vehicle, double seconds,
                            std::uint64_t seed) {
   Swimming swimming(vehicle, seed);
   const NominalModel nominal(vehicle);
-  vehicle::Excitation excitation({}, nominal.most_rps, seed);
+  simulator::Excitation excitation({}, nominal.most_rps, seed);
   SlopeWindow window;
   DynamicsModel model = untaught_model();
   std::size_t measured = 0;

@@ -9,7 +9,7 @@
 
 #include "kelpie/model/dynamics_model.hpp"
 #include "lab/controllers.hpp"
-#include "vehicle/parameters.hpp"
+#include "simulator/parameters.hpp"
 
 namespace kelpie::lab {
 
@@ -62,11 +62,11 @@ struct MissionErrors {
 /// The simulated vehicle under a controller. Position and heading are known to 5 mm and 2 mrad
 /// (white, at 10 Hz), velocities have noise as recorded. During station keeping a current of 0.08
 /// m/s flows from the start on, and turns by 90° at the mishap `current`.
-MissionErrors fly(const vehicle::VehicleParameters& vehicle, const Mission& mission,
+MissionErrors fly(const simulator::VehicleParameters& vehicle, const Mission& mission,
                   Controller& controller);
 
 /// A model after `seconds` of driving the nominal vehicle as in a scenario, at 5 Hz.
-DynamicsModel commissioned(const vehicle::VehicleParameters& vehicle, double seconds,
+DynamicsModel commissioned(const simulator::VehicleParameters& vehicle, double seconds,
                            std::uint64_t seed);
 
 }  // namespace kelpie::lab

@@ -6,8 +6,8 @@
 #include "cli/output.hpp"
 #include "file/atomic_file.hpp"
 #include "log/read_log.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
 
@@ -35,8 +35,8 @@ log::Dataset StudiedLog::read(const std::optional<std::string>& held_out) const 
   return cli::open_log(log.source, file, roles).dataset();
 }
 
-log::Dataset simulated_log(const vehicle::Scenario& scenario, const std::string& source) {
-  const log::Table table = study::log_table(vehicle::simulate(scenario), source);
+log::Dataset simulated_log(const simulator::Scenario& scenario, const std::string& source) {
+  const log::Table table = study::log_table(simulator::simulate(scenario), source);
   return log::make_dataset(table, log::guess_roles(table, {}));
 }
 

@@ -15,7 +15,7 @@
 #include "file/out_folder.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
-#include "vehicle/scenario.hpp"
+#include "simulator/scenario.hpp"
 
 namespace kelpie::lab {
 
@@ -49,7 +49,7 @@ struct StudiedLog {
 };
 
 /// The log of a simulated drive, with guessed roles.
-log::Dataset simulated_log(const vehicle::Scenario& scenario, const std::string& source);
+log::Dataset simulated_log(const simulator::Scenario& scenario, const std::string& source);
 
 /// Runs a study with a progress bar. `study` takes a function to call with the finished share; the
 /// function returns false to stop. After an interrupt by the user: throws Failure, or returns the

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/learner/regressor.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/svr/regressor.hpp"
 
 namespace kelpie::lab {
 

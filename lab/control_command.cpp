@@ -2,13 +2,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -19,7 +17,7 @@
 #include "lab/commands.hpp"
 #include "lab/controllers.hpp"
 #include "lab/json_table.hpp"
-#include "vehicle/scenario_file.hpp"
+#include "simulator/scenario_file.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -41,7 +39,7 @@ inline constexpr std::array kControllers{
 
 // The plan of a study: vehicle, seeds and lengths of the missions.
 struct ControlPlan {
-  vehicle::VehicleParameters vehicle;
+  simulator::VehicleParameters vehicle;
   std::size_t seeds = 5;
   std::vector<Mishap> mishaps{kMishaps.begin(), kMishaps.end()};
   std::uint64_t first_seed = 1;
@@ -168,33 +166,21 @@ ControlResult run_control(const ControlPlan& plan) {
     }
   }
   const NominalModel nominal(plan.vehicle);
-  std::atomic<bool> stopped{false};
-  std::mutex mutex;
-  std::size_t done = 0;
-  const auto all = static_cast<double>(result.cases.size() * plan.seeds);
-  std::vector<std::function<void()>> jobs;
+  std::vector<DynamicsModel> learned;
   for (std::size_t seed = 0; seed < plan.seeds; ++seed) {
-    const auto learned = std::make_shared<const DynamicsModel>(
-        commissioned(plan.vehicle, plan.commissioning_s, plan.first_seed + seed));
-    for (ControlCase& one : result.cases) {
-      jobs.emplace_back([&, seed, learned] {
-        for (const ControllerKind kind : kControllers) {
-          if (stopped) {
-            return;
-          }
-          const std::unique_ptr<Controller> controller = make_controller(kind, nominal, *learned);
-          const Mission mission{one.path, one.mishap, plan.times, plan.first_seed + seed};
-          one.flown[index_of(kind)][seed] = fly(plan.vehicle, mission, *controller);
-        }
-        const std::lock_guard lock(mutex);
-        if (!plan.keep_going(static_cast<double>(++done) / all)) {
-          stopped = true;
-        }
-      });
-    }
+    learned.push_back(commissioned(plan.vehicle, plan.commissioning_s, plan.first_seed + seed));
   }
-  jobs::run_all(jobs.size(), plan.threads, [&](std::size_t job) { jobs[job](); });
-  result.interrupted = stopped;
+  const auto missions = [&](std::size_t job) {
+    const std::size_t seed = job / result.cases.size();
+    ControlCase& one = result.cases[job % result.cases.size()];
+    for (const ControllerKind kind : kControllers) {
+      const auto controller = make_controller(kind, nominal, learned[seed]);
+      const Mission mission{one.path, one.mishap, plan.times, plan.first_seed + seed};
+      one.flown[index_of(kind)][seed] = fly(plan.vehicle, mission, *controller);
+    }
+  };
+  result.interrupted =
+      !jobs::run_while(plan.keep_going, result.cases.size() * plan.seeds, plan.threads, missions);
   return result;
 }
 
@@ -263,8 +249,8 @@ struct ControlArguments {
 void control(const ControlArguments& options) {
   ControlPlan plan = options.plan;
   plan.mishaps = wanted_mishaps(options.mishaps);
-  plan.vehicle = vehicle::read_scenario(scenario_file(options.scenario, "small.toml")).vehicle;
-  vehicle::require_plane(plan.vehicle);
+  plan.vehicle = simulator::read_scenario(scenario_file(options.scenario, "small.toml")).vehicle;
+  simulator::require_plane(plan.vehicle);
   if (options.quick) {
     plan.commissioning_s = 120.0;
     plan.times = {.settle_s = 10.0, .before_s = 20.0, .during_s = 20.0, .after_s = 20.0};

@@ -9,19 +9,19 @@
 #include "core/angle.hpp"
 #include "lab/reallocation.hpp"
 #include "lab/reckoners.hpp"
-#include "vehicle/dynamics.hpp"
-#include "vehicle/parameters.hpp"
+#include "simulator/dynamics.hpp"
+#include "simulator/parameters.hpp"
 
 namespace kelpie::lab {
 namespace {
 
-Eigen::Vector3d planar(const vehicle::Vector6& frd) {
+Eigen::Vector3d planar(const simulator::Vector6& frd) {
   return {frd(0), frd(1), frd(5)};
 }
 
 // Forces in FLU of one newton of a thruster that is given in FRD.
-Eigen::Vector3d flu_axis(const vehicle::Thruster& thruster) {
-  const vehicle::Vector6 axis = vehicle::thrust_axis(thruster);
+Eigen::Vector3d flu_axis(const simulator::Thruster& thruster) {
+  const simulator::Vector6 axis = simulator::thrust_axis(thruster);
   return {axis(0), -axis(1), -axis(5)};
 }
 
@@ -164,15 +164,15 @@ class AdaptiveController final : public Controller {
 
 }  // namespace
 
-NominalModel::NominalModel(const vehicle::VehicleParameters& vehicle)
-    : mass(planar(vehicle::make_plant(vehicle, {}).mass.diagonal())),
+NominalModel::NominalModel(const simulator::VehicleParameters& vehicle)
+    : mass(planar(simulator::make_plant(vehicle, {}).mass.diagonal())),
       linear(planar(vehicle.linear_damping)),
       quadratic(planar(vehicle.quadratic_damping)),
-      thrusters{vehicle.thrusters[vehicle::kSurgeLeft], vehicle.thrusters[vehicle::kSurgeRight],
-                vehicle.thrusters[vehicle::kSway]},
+      thrusters{vehicle.thrusters[simulator::kSurgeLeft], vehicle.thrusters[simulator::kSurgeRight],
+                vehicle.thrusters[simulator::kSway]},
       lag_s(vehicle.rotor_lag_s) {
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const vehicle::Thruster& thruster = thrusters[static_cast<std::size_t>(i)];
+    const simulator::Thruster& thruster = thrusters[static_cast<std::size_t>(i)];
     by_thrust.col(i) = flu_axis(thruster);
     most_rps(i) = thruster.max_speed_rps;
   }
@@ -189,7 +189,7 @@ Eigen::Vector3d NominalModel::forces(const Eigen::Vector3d& speeds_rps) const {
 Eigen::Vector3d NominalModel::thrusts(const Eigen::Vector3d& speeds_rps) const {
   Eigen::Vector3d thrusts;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    thrusts(i) = vehicle::thrust(thrusters[static_cast<std::size_t>(i)], speeds_rps(i));
+    thrusts(i) = simulator::thrust(thrusters[static_cast<std::size_t>(i)], speeds_rps(i));
   }
   return thrusts;
 }
@@ -197,7 +197,7 @@ Eigen::Vector3d NominalModel::thrusts(const Eigen::Vector3d& speeds_rps) const {
 Eigen::Vector3d NominalModel::speeds(const Eigen::Vector3d& thrusts_n) const {
   Eigen::Vector3d speeds;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    speeds(i) = vehicle::speed_for_thrust(thrusters[static_cast<std::size_t>(i)], thrusts_n(i));
+    speeds(i) = simulator::speed_for_thrust(thrusters[static_cast<std::size_t>(i)], thrusts_n(i));
   }
   return speeds;
 }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "vehicle/parameters.hpp"
+#include "simulator/parameters.hpp"
 
 namespace kelpie::lab {
 
@@ -69,7 +69,7 @@ struct Sensed {
 
 /// The vehicle in the plane, undamaged: the model for the design of controllers.
 struct NominalModel {
-  explicit NominalModel(const vehicle::VehicleParameters& vehicle);
+  explicit NominalModel(const simulator::VehicleParameters& vehicle);
 
   /// Rotor speeds for forces ahead and to port [N] and a moment to port [N m], within their limits.
   Eigen::Vector3d allocate(const Eigen::Vector3d& forces) const;
@@ -84,7 +84,7 @@ struct NominalModel {
   Eigen::Vector3d mass;       ///< with added mass: kg, kg, kg m²
   Eigen::Vector3d linear;     ///< drag
   Eigen::Vector3d quadratic;  ///< drag
-  std::array<vehicle::Thruster, 3> thrusters;
+  std::array<simulator::Thruster, 3> thrusters;
   Eigen::Matrix3d by_thrust;  ///< forces by thrusts
   Eigen::Vector3d most_rps;
   double lag_s;  ///< of the rotors

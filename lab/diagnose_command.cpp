@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/commands.hpp"
 #include "lab/diagnosis_study.hpp"
-#include "vehicle/scenario_file.hpp"
+#include "simulator/scenario_file.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -19,7 +19,7 @@ struct DiagnoseArguments {
 void diagnose(const DiagnoseArguments& options) {
   const std::filesystem::path folder =
       options.scenarios.empty() ? scenario_folder() : std::filesystem::path(options.scenarios);
-  const DiagnosisPlan plan{.scenario = vehicle::read_scenario(folder / "diagnosis.toml"),
+  const DiagnosisPlan plan{.scenario = simulator::read_scenario(folder / "diagnosis.toml"),
                            .seeds = options.quick ? 1 : options.seeds,
                            .first_seed = options.seed,
                            .nominal_hours = options.quick ? 1.0 : options.hours,

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "vehicle/dynamics.hpp"
+#include "simulator/dynamics.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -20,49 +20,49 @@ constexpr std::size_t kFirstThruster = 3;  // of the inputs u, v, r, th1, th2, t
 
 class Maker {
  public:
-  explicit Maker(const vehicle::VehicleParameters& vehicle) : vehicle_(vehicle) {
+  explicit Maker(const simulator::VehicleParameters& vehicle) : vehicle_(vehicle) {
     plant_ = make_plant(vehicle, {});
   }
 
-  static Cause thruster(vehicle::Configuration& to, std::size_t i, double share) {
+  static Cause thruster(simulator::Configuration& to, std::size_t i, double share) {
     to.effectiveness(static_cast<Eigen::Index>(i)) = 1.0 - share;
     return told(CauseKind::thruster, kFirstThruster + i, 1.0 - share);
   }
-  static Cause all_thrusters(vehicle::Configuration& to, double share) {
+  static Cause all_thrusters(simulator::Configuration& to, double share) {
     to.effectiveness.setConstant(1.0 - share);
     return told(CauseKind::all_thrusters, 0, 1.0 - share);
   }
-  static Cause drag(vehicle::Configuration& to, std::size_t axis, double share) {
+  static Cause drag(simulator::Configuration& to, std::size_t axis, double share) {
     to.damping_factor(kBody[axis]) = 1.0 + share;
     return told(CauseKind::drag, axis, 1.0 + share);
   }
-  Cause load(vehicle::Configuration& to, double ahead_m, double share) const {
+  Cause load(simulator::Configuration& to, double ahead_m, double share) const {
     to.payload.mass_kg = share * plant_.mass(0, 0);
-    to.payload.buoyancy_n = to.payload.mass_kg * vehicle::kGravity;
+    to.payload.buoyancy_n = to.payload.mass_kg * simulator::kGravity;
     to.payload.position_m.x() = ahead_m;
     return told(CauseKind::load, 0, 1.0 + share);
   }
-  Cause brake(vehicle::Configuration& to, double share) const {
-    const double force = 2.0 * share * greatest(vehicle::kSurgeLeft);
+  Cause brake(simulator::Configuration& to, double share) const {
+    const double force = 2.0 * share * greatest(simulator::kSurgeLeft);
     to.pull_n.x() = -force;
     return told(CauseKind::force, 0, -force / plant_.mass(0, 0));
   }
   // To starboard, which is negative in the log.
-  Cause tether(vehicle::Configuration& to, double share) const {
-    const double force = share * greatest(vehicle::kSway);
+  Cause tether(simulator::Configuration& to, double share) const {
+    const double force = share * greatest(simulator::kSway);
     to.pull_n.y() = force;
     to.pull_position_m.x() = -0.5;
     return told(CauseKind::force, 1, -force / plant_.mass(1, 1));
   }
-  static Cause scale(vehicle::Configuration& to, std::size_t axis, double share) {
+  static Cause scale(simulator::Configuration& to, std::size_t axis, double share) {
     to.sensors.scale(static_cast<Eigen::Index>(axis)) = 1.0 + share;
     return told(CauseKind::sensor_scale, axis, 1.0 + share);
   }
-  static Cause bias(vehicle::Configuration& to, std::size_t axis, double share) {
+  static Cause bias(simulator::Configuration& to, std::size_t axis, double share) {
     to.sensors.bias(static_cast<Eigen::Index>(axis)) = share * kBiasUnits[axis];
     return told(CauseKind::sensor_bias, axis, share * kBiasUnits[axis]);
   }
-  static Cause frozen(vehicle::Configuration& to, std::size_t axis) {
+  static Cause frozen(simulator::Configuration& to, std::size_t axis) {
     to.sensors.frozen(static_cast<Eigen::Index>(axis)) = 1.0;
     return told(CauseKind::frozen, axis, 0.0);
   }
@@ -72,17 +72,17 @@ class Maker {
     return {kind, place, size, size, size};
   }
   double greatest(std::size_t thruster) const {
-    const vehicle::Thruster& of = vehicle_.thrusters[thruster];
+    const simulator::Thruster& of = vehicle_.thrusters[thruster];
     return of.forward * of.max_speed_rps * of.max_speed_rps;
   }
 
-  const vehicle::VehicleParameters& vehicle_;
-  vehicle::Plant plant_;
+  const simulator::VehicleParameters& vehicle_;
+  simulator::Plant plant_;
 };
 
 }  // namespace
 
-std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& vehicle) {
+std::vector<DiagnosisCase> diagnosis_cases(const simulator::VehicleParameters& vehicle) {
   const Maker maker(vehicle);
   std::vector<DiagnosisCase> cases;
   const auto add = [&](const std::string& name, int effect, bool special, auto... makes) {
@@ -91,7 +91,7 @@ std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& veh
     (made.truth.push_back(makes(made.configuration)), ...);
     cases.push_back(std::move(made));
   };
-  using To = vehicle::Configuration&;
+  using To = simulator::Configuration&;
   for (const int effect : {20, 40, 60, 80}) {
     const double share = 0.01 * effect;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -12,9 +12,9 @@
 #include "core/quantile.hpp"
 #include "jobs/run_all.hpp"
 #include "kelpie/core/random.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "lab/json_table.hpp"
-#include "vehicle/simulation.hpp"
+#include "simulator/simulation.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -27,7 +27,7 @@ Diagnosis fresh_diagnosis() {
   return Diagnosis(6, {0, 1, 2}, {0, 1, 5});
 }
 
-void show(Diagnosis& diagnosis, const vehicle::LogRow& row) {
+void show(Diagnosis& diagnosis, const simulator::LogRow& row) {
   std::array<double, 6> x{};
   std::copy_n(row.velocity.data(), 3, x.begin());
   std::copy_n(row.rotors_rps.data(), 3, x.begin() + 3);
@@ -73,7 +73,7 @@ class Seed {
     scenario_.seed = seed;
     scenario_.configurations.resize(2);
     scenario_.phases = {{.configuration = 0, .duration_s = change_s_}};
-    const std::vector<vehicle::LogRow> rows = vehicle::simulate(scenario_);
+    const std::vector<simulator::LogRow> rows = simulator::simulate(scenario_);
     shown_ = rows.size() - kSensorLead;
     for (std::size_t row = 0; row < shown_; ++row) {
       show(diagnosis_, rows[row]);
@@ -84,7 +84,7 @@ class Seed {
   DiagnosisRun run(const DiagnosisCase& of, std::size_t index) {
     scenario_.configurations[1] = of.configuration;
     Diagnosis diagnosis = diagnosis_;
-    const std::vector<vehicle::LogRow> rows = vehicle::simulate(scenario_);
+    const std::vector<simulator::LogRow> rows = simulator::simulate(scenario_);
     for (std::size_t row = shown_; row < rows.size(); ++row) {
       show(diagnosis, rows[row]);
     }
@@ -101,21 +101,21 @@ class Seed {
   }
 
  private:
-  vehicle::Scenario scenario_;
+  simulator::Scenario scenario_;
   Diagnosis diagnosis_;
   double change_s_ = 0.0;
   std::size_t shown_ = 0;
 };
 
 NominalRun nominal_run(const DiagnosisPlan& plan, std::uint64_t seed) {
-  vehicle::Scenario scenario = plan.scenario;
+  simulator::Scenario scenario = plan.scenario;
   scenario.configurations.resize(1);
   scenario.seed = seed;
   scenario.phases = {{.configuration = 0, .duration_s = 3600.0 * plan.nominal_hours}};
   Diagnosis diagnosis = fresh_diagnosis();
   NominalRun run{.seed = seed, .hours = plan.nominal_hours};
   bool was_named = false;
-  for (const vehicle::LogRow& row : vehicle::simulate(scenario)) {
+  for (const simulator::LogRow& row : simulator::simulate(scenario)) {
     show(diagnosis, row);
     const bool is_open = !diagnosis.findings().empty() && !diagnosis.findings().back().settled;
     const bool is_named = is_open && diagnosis.findings().back().state == FindingState::named;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "chart/text_table.hpp"
-#include "kelpie/motion/diagnosis.hpp"
-#include "vehicle/scenario.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
+#include "simulator/scenario.hpp"
 
 namespace kelpie::lab {
 
@@ -20,7 +20,7 @@ struct DiagnosisCase {
   int effect = 0;    ///< strength in percent; 0: without strength
   bool special =
       false;  ///< two causes, or a load off the centre: not in the table of single causes
-  vehicle::Configuration configuration;
+  simulator::Configuration configuration;
   std::vector<Cause> truth;  ///< one or two; intervals unused
 };
 
@@ -34,14 +34,14 @@ struct DiagnosisCase {
 ///     bias       of u, v, r: a share of 0.25 m/s, 0.1 m/s, 0.2 rad/s
 ///     frozen     u, v, r
 ///     two        of 40 percent each
-std::vector<DiagnosisCase> diagnosis_cases(const vehicle::VehicleParameters& vehicle);
+std::vector<DiagnosisCase> diagnosis_cases(const simulator::VehicleParameters& vehicle);
 
 /// "thruster", "drag", … of a cause of the simulated vehicle, with its column or axis.
 std::string case_name(const Cause& cause);
 
 /// A study of the diagnosis on the simulated vehicle.
 struct DiagnosisPlan {
-  vehicle::Scenario scenario;  ///< vehicle, noise, excitation and rate; one configuration
+  simulator::Scenario scenario;  ///< vehicle, noise, excitation and rate; one configuration
   std::size_t seeds = 20;
   std::uint64_t first_seed = 1;
   double before_s = 900.0;      ///< nominal, before the change; plus up to a random minute

@@ -2,10 +2,8 @@
 #include "lab/drive_study.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -14,32 +12,32 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "lab/planar_truth.hpp"
+#include "simulator/excitation.hpp"
+#include "simulator/frames.hpp"
+#include "simulator/pilot.hpp"
+#include "simulator/sensors.hpp"
+#include "simulator/simulation.hpp"
+#include "simulator/simulator.hpp"
 #include "study/six_axes.hpp"
-#include "vehicle/excitation.hpp"
-#include "vehicle/frames.hpp"
-#include "vehicle/pilot.hpp"
-#include "vehicle/sensors.hpp"
-#include "vehicle/simulation.hpp"
-#include "vehicle/simulator.hpp"
 
 namespace kelpie::lab {
 namespace {
 
 constexpr double kShortestS = 5.0;  // a manoeuvre
 constexpr double kStricter = 0.8;   // of the wanted share
-constexpr double kStickS = 0.5;     // lag of a pilot's hand, as vehicle::Pilot's
+constexpr double kStickS = 0.5;     // lag of a pilot's hand, as simulator::Pilot's
 constexpr int kMostTries = 200;     // of a draw that leaves the bounds
 constexpr double kSmaller = 0.97;   // of the amplitude after such a draw
 
 // The simulated vehicle under way, and the rows of its log.
 class LoggedDrive {
  public:
-  explicit LoggedDrive(const vehicle::Scenario& scenario)
+  explicit LoggedDrive(const simulator::Scenario& scenario)
       : ticks_per_row_(static_cast<std::int64_t>(
-            std::llround(static_cast<double>(vehicle::kTicksPerSecond) / scenario.rate_hz))),
+            std::llround(static_cast<double>(simulator::kTicksPerSecond) / scenario.rate_hz))),
         simulator_(scenario.vehicle,
-                   vehicle::make_plant(scenario.vehicle, scenario.configurations.front()),
-                   scenario.current_m_s, vehicle::State{}) {}
+                   simulator::make_plant(scenario.vehicle, scenario.configurations.front()),
+                   scenario.current_m_s, simulator::State{}) {}
   virtual ~LoggedDrive() = default;
   LoggedDrive(const LoggedDrive&) = delete;
   LoggedDrive& operator=(const LoggedDrive&) = delete;
@@ -55,7 +53,7 @@ class LoggedDrive {
   virtual std::unique_ptr<study::DrivableVehicle> vehicle_of(const ExpectedFit& expected) const = 0;
 
   void drive(const std::vector<double>& speeds, double duration_s) {
-    const auto ticks = static_cast<std::int64_t>(std::llround(duration_s / vehicle::kTickS));
+    const auto ticks = static_cast<std::int64_t>(std::llround(duration_s / simulator::kTickS));
     for (std::int64_t i = 0; i < ticks; ++i) {
       advance(speeds);
       note_tick();
@@ -64,7 +62,7 @@ class LoggedDrive {
 
   // The drive before, by the scenario's driver. Bounds count from its end.
   void drive_first(double duration_s) {
-    for (double t = 0.0; t < duration_s - 1e-9; t += vehicle::kTickS) {
+    for (double t = 0.0; t < duration_s - 1e-9; t += simulator::kTickS) {
       advance_first();
       note_tick();
     }
@@ -83,7 +81,7 @@ class LoggedDrive {
   Eigen::Vector3d position_m() const { return simulator_.state().position_m - origin_; }
 
   std::int64_t ticks_per_row_;
-  vehicle::Simulator simulator_;
+  simulator::Simulator simulator_;
 
  private:
   void note_tick() {
@@ -100,11 +98,11 @@ class LoggedDrive {
 
 class PlanarLoggedDrive : public LoggedDrive {
  public:
-  PlanarLoggedDrive(const vehicle::Scenario& scenario, std::uint64_t seed)
+  PlanarLoggedDrive(const simulator::Scenario& scenario, std::uint64_t seed)
       : LoggedDrive(scenario),
         scenario_(scenario),
         sensors_(scenario.noise, seed),
-        known_{{"th1", scenario.vehicle.thrusters[vehicle::kSurgeLeft].forward}} {
+        known_{{"th1", scenario.vehicle.thrusters[simulator::kSurgeLeft].forward}} {
     rows_.thrusters = {"th1", "th2", "th3"};
     Eigen::Vector3d most;
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -117,9 +115,9 @@ class PlanarLoggedDrive : public LoggedDrive {
 
   study::ThrusterRange range() const override { return range_; }
   study::DriveMotion motion() const override {
-    const vehicle::State& state = simulator_.state();
+    const simulator::State& state = simulator_.state();
     const Eigen::Matrix3d to_world = state.attitude.toRotationMatrix();
-    const Eigen::Vector3d velocity = vehicle::planar_flu(state.velocity);
+    const Eigen::Vector3d velocity = simulator::planar_flu(state.velocity);
     const Eigen::Vector3d position = position_m();
     return {.velocity = {velocity(0), velocity(1), 0.0, 0.0, 0.0, velocity(2)},
             .position_m = {position.x(), -position.y(), 0.0},
@@ -141,29 +139,29 @@ class PlanarLoggedDrive : public LoggedDrive {
     simulator_.advance_in_plane(Eigen::Map<const Eigen::Vector3d>(speeds.data()));
   }
   void advance_first() override {
-    simulator_.advance_in_plane(first_->advance(vehicle::kTickS, 1.0));
+    simulator_.advance_in_plane(first_->advance(simulator::kTickS, 1.0));
   }
   void log() override {
     const Eigen::Vector3d velocity =
-        sensors_.measure(vehicle::planar_flu(simulator_.state().velocity));
+        sensors_.measure(simulator::planar_flu(simulator_.state().velocity));
     rows_.times_s.push_back(simulator_.time_s());
     rows_.velocities.insert(rows_.velocities.end(), velocity.begin(), velocity.end());
     const auto rotors = simulator_.state().rotors_rps.head<3>();
     rows_.speeds.insert(rows_.speeds.end(), rotors.begin(), rotors.end());
   }
 
-  const vehicle::Scenario& scenario_;
-  vehicle::VelocitySensors sensors_;
+  const simulator::Scenario& scenario_;
+  simulator::VelocitySensors sensors_;
   std::vector<std::pair<std::string, double>> known_;
   study::ThrusterRange range_;
-  std::optional<vehicle::Excitation> first_;
+  std::optional<simulator::Excitation> first_;
   PlanarRows rows_;
 };
 
 // Commands are shares of full; the scale is the true surge inertia.
 class SixAxisLoggedDrive : public LoggedDrive {
  public:
-  SixAxisLoggedDrive(const vehicle::Scenario& scenario, std::uint64_t seed)
+  SixAxisLoggedDrive(const simulator::Scenario& scenario, std::uint64_t seed)
       : LoggedDrive(scenario),
         vehicle_(scenario.vehicle),
         sensors_(scenario.noise, seed),
@@ -174,8 +172,8 @@ class SixAxisLoggedDrive : public LoggedDrive {
     return {std::vector(count, -1.0), std::vector(count, 1.0)};
   }
   study::DriveMotion motion() const override {
-    const vehicle::State& state = simulator_.state();
-    const Eigen::Vector3d angles = vehicle::euler_angles(state.attitude);
+    const simulator::State& state = simulator_.state();
+    const Eigen::Vector3d angles = simulator::euler_angles(state.attitude);
     const Eigen::Vector3d position = position_m();
     study::DriveMotion motion{.position_m = {position.x(), position.y(), position.z()},
                               .angles_rad = {angles.x(), angles.y(), angles.z()}};
@@ -203,28 +201,28 @@ class SixAxisLoggedDrive : public LoggedDrive {
 
  private:
   void advance(const std::vector<double>& speeds) override {
-    vehicle::RotorSpeeds commands(static_cast<Eigen::Index>(speeds.size()));
+    simulator::RotorSpeeds commands(static_cast<Eigen::Index>(speeds.size()));
     for (std::size_t i = 0; i < speeds.size(); ++i) {
       commands(static_cast<Eigen::Index>(i)) = speeds[i] * vehicle_.thrusters[i].max_speed_rps;
     }
     simulator_.advance(commands);
   }
   void advance_first() override {
-    simulator_.advance(first_.advance(simulator_.state(), vehicle::kTickS, 1.0));
+    simulator_.advance(first_.advance(simulator_.state(), simulator::kTickS, 1.0));
   }
   void log() override {
-    const vehicle::Vector6 velocity = sensors_.measure(simulator_.state().velocity);
-    log_.push_back(vehicle::six_axis_row(simulator_, vehicle_.command_unit, velocity, sensors_));
+    const simulator::Vector6 velocity = sensors_.measure(simulator_.state().velocity);
+    log_.push_back(simulator::six_axis_row(simulator_, vehicle_.command_unit, velocity, sensors_));
   }
 
-  const vehicle::VehicleParameters& vehicle_;
-  vehicle::SixAxisSensors sensors_;
-  vehicle::Pilot first_;
-  std::vector<vehicle::SixAxisRow> log_;
+  const simulator::VehicleParameters& vehicle_;
+  simulator::SixAxisSensors sensors_;
+  simulator::Pilot first_;
+  std::vector<simulator::SixAxisRow> log_;
 };
 
-std::unique_ptr<LoggedDrive> logged_drive(const vehicle::Scenario& scenario, std::uint64_t seed) {
-  if (scenario.log == vehicle::LogKind::six) {
+std::unique_ptr<LoggedDrive> logged_drive(const simulator::Scenario& scenario, std::uint64_t seed) {
+  if (scenario.log == simulator::LogKind::six) {
     return std::make_unique<SixAxisLoggedDrive>(scenario, seed);
   }
   return std::make_unique<PlanarLoggedDrive>(scenario, seed);
@@ -455,23 +453,13 @@ std::string driver_name(Driver driver) {
 DriveStudy study_drives(const DriveStudyPlan& plan) {
   DriveStudy study;
   study.seeds.resize(plan.seeds);
-  std::atomic<bool> stopped{false};
-  std::mutex mutex;
-  std::size_t done = 0;
-  const std::size_t all = plan.seeds * kDrivers.size();
-  jobs::run_all(all, plan.threads, [&](std::size_t job) {
-    if (stopped) {
-      return;
-    }
+  const auto drive = [&](std::size_t job) {
     const std::size_t seed = job / kDrivers.size();
     const std::size_t which = job % kDrivers.size();
     study.seeds[seed][which] = StudiedDrive(plan, kDrivers[which], plan.scenario.seed + seed).run();
-    const std::lock_guard lock(mutex);
-    if (!plan.keep_going(static_cast<double>(++done) / static_cast<double>(all))) {
-      stopped = true;
-    }
-  });
-  study.interrupted = stopped;
+  };
+  study.interrupted =
+      !jobs::run_while(plan.keep_going, plan.seeds * kDrivers.size(), plan.threads, drive);
   return study;
 }
 

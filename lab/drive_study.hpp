@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "simulator/scenario.hpp"
 #include "study/drive_plan.hpp"
-#include "vehicle/scenario.hpp"
 
 namespace kelpie::lab {
 
@@ -25,7 +25,7 @@ std::string driver_name(Driver driver);
 /// A study of drives: the vehicle, in the plane or on six axes as the scenario's log, and what is
 /// to be told. Parameters that the vehicle doesn't have (0) are not wanted.
 struct DriveStudyPlan {
-  vehicle::Scenario scenario;
+  simulator::Scenario scenario;
   std::size_t seeds = 20;
   std::vector<std::string> tell{};  ///< study::wanted_places()
   double share = 0.05;              ///< half width of the 90 % interval over the size

@@ -11,8 +11,8 @@
 #include "health/factors.hpp"
 #include "kelpie/core/random.hpp"
 #include "lab/commands.hpp"
-#include "vehicle/parameters.hpp"
-#include "vehicle/scenario_file.hpp"
+#include "simulator/parameters.hpp"
+#include "simulator/scenario_file.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -41,7 +41,7 @@ struct HealthStudy {
   std::size_t dives = 0;
 };
 
-health::DriveLog dive(const HealthStudyArguments& options, vehicle::Scenario scenario,
+health::DriveLog dive(const HealthStudyArguments& options, simulator::Scenario scenario,
                       std::size_t seed, std::size_t number) {
   const double week = static_cast<double>(number) / static_cast<double>(options.dives);
   const double fouled = std::max(0.0, week - static_cast<double>(options.clean_weeks));
@@ -98,7 +98,7 @@ void judge_last(const HealthStudyArguments& options, const health::HealthCard& c
 
 // The common fit is of all dives so far, in every week after the clean weeks; before, of the clean
 // weeks.
-void study_seed(const HealthStudyArguments& options, const vehicle::Scenario& scenario,
+void study_seed(const HealthStudyArguments& options, const simulator::Scenario& scenario,
                 std::size_t seed, HealthStudy& study) {
   std::vector<health::DriveLog> logs;
   std::size_t found = 0;
@@ -184,9 +184,9 @@ void run_health_study(const HealthStudyArguments& options) {
     }
     return;
   }
-  const vehicle::Scenario scenario =
-      vehicle::read_scenario(scenario_file(options.scenario, "identify.toml"));
-  vehicle::require_plane(scenario.vehicle);
+  const simulator::Scenario scenario =
+      simulator::read_scenario(scenario_file(options.scenario, "identify.toml"));
+  simulator::require_plane(scenario.vehicle);
   HealthStudy study;
   run_watched("diving", [&](const auto& keep_going) {
     for (std::size_t seed = 0; seed < options.seeds; ++seed) {

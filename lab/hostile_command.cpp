@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -202,17 +200,9 @@ std::vector<HostileRun> run_streams(const std::vector<HostileKind>& kinds,
                                     const HostileArguments& options,
                                     const std::function<bool(double)>& keep_going) {
   std::vector<HostileRun> runs(kinds.size() * options.seeds);
-  std::atomic<bool> stopped{false};
-  std::mutex mutex;
-  std::size_t done = 0;
-  jobs::run_all(runs.size(), options.threads, [&](std::size_t job) {
-    if (stopped) {
-      return;
-    }
+  jobs::run_while(keep_going, runs.size(), options.threads, [&](std::size_t job) {
     runs[job] = run_stream(kinds[job / options.seeds].stream(options.seed + job % options.seeds),
                            options.set);
-    const std::lock_guard lock(mutex);
-    stopped = !keep_going(static_cast<double>(++done) / static_cast<double>(runs.size()));
   });
   return runs;
 }

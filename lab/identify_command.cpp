@@ -10,13 +10,13 @@
 #include "chart/wording.hpp"
 #include "cli/output.hpp"
 #include "core/quantile.hpp"
-#include "kelpie/motion/planar_fit.hpp"
+#include "kelpie/identify/planar_fit.hpp"
 #include "lab/commands.hpp"
 #include "lab/planar_truth.hpp"
+#include "simulator/parameters.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/six_axes.hpp"
-#include "vehicle/parameters.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -24,34 +24,34 @@ namespace {
 constexpr double kRounding = 1e-9;
 
 // As the log is: in the plane FLU, on six axes FRD.
-std::vector<double> truth_of(const vehicle::Scenario& scenario) {
-  if (scenario.log == vehicle::LogKind::six) {
+std::vector<double> truth_of(const simulator::Scenario& scenario) {
+  if (scenario.log == simulator::LogKind::six) {
     return study::six_axis_truth(scenario.vehicle);
   }
   return planar_truth(scenario);
 }
 
 // The scale is the true surge inertia.
-ParameterFit identify_six_axes_seed(const vehicle::Scenario& scenario) {
+ParameterFit identify_six_axes_seed(const simulator::Scenario& scenario) {
   return scaled_by_inertia(
-      fit_six_axes(study::six_axis_rows(vehicle::simulate_six_axes(scenario), scenario.vehicle)),
+      fit_six_axes(study::six_axis_rows(simulator::simulate_six_axes(scenario), scenario.vehicle)),
       study::six_axis_truth(scenario.vehicle).front(), 0.0);
 }
 
 // The scale is the left thruster's true forward coefficient.
-ParameterFit identify_seed(const vehicle::Scenario& scenario) {
-  if (scenario.log == vehicle::LogKind::six) {
+ParameterFit identify_seed(const simulator::Scenario& scenario) {
+  if (scenario.log == simulator::LogKind::six) {
     return identify_six_axes_seed(scenario);
   }
   PlanarRows rows;
   rows.thrusters = {"th1", "th2", "th3"};
-  for (const vehicle::LogRow& row : vehicle::simulate(scenario)) {
+  for (const simulator::LogRow& row : simulator::simulate(scenario)) {
     rows.times_s.push_back(row.t_s);
     rows.velocities.insert(rows.velocities.end(), row.velocity.begin(), row.velocity.end());
     rows.speeds.insert(rows.speeds.end(), row.rotors_rps.begin(), row.rotors_rps.end());
   }
   return scaled_by_thrust(fit_planar(rows),
-                          {{"th1", scenario.vehicle.thrusters[vehicle::kSurgeLeft].forward}});
+                          {{"th1", scenario.vehicle.thrusters[simulator::kSurgeLeft].forward}});
 }
 
 // A parameter over the seeds, against the true value of the simulated vehicle.
@@ -79,14 +79,14 @@ struct IdentifyStudyArguments {
 };
 
 // Simulates and identifies all rows.
-IdentifyStudy study_identification(const vehicle::Scenario& first, std::size_t seeds,
+IdentifyStudy study_identification(const simulator::Scenario& first, std::size_t seeds,
                                    const std::function<bool(double)>& keep_going) {
   const std::vector<double> truth = truth_of(first);
   IdentifyStudy study;
   std::size_t inside_all = 0;
   std::size_t judged_all = 0;
   for (std::size_t i = 0; i < seeds; ++i) {
-    vehicle::Scenario scenario = first;
+    simulator::Scenario scenario = first;
     scenario.seed = first.seed + i;
     const ParameterFit fit = identify_seed(scenario);
     study.parameters.resize(fit.parameters.size());
@@ -156,9 +156,9 @@ std::string study_text(const IdentifyStudy& study) {
 
 void run_identify_study(const IdentifyStudyArguments& options) {
   require(options.seeds > 0, "--seeds", "has to be > 0");
-  const vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
-  if (scenario.log != vehicle::LogKind::six) {
-    vehicle::require_plane(scenario.vehicle);
+  const simulator::Scenario scenario = simulator::read_scenario(options.scenario);
+  if (scenario.log != simulator::LogKind::six) {
+    simulator::require_plane(scenario.vehicle);
   }
   require(scenario.configurations.size() == 1, "scenario", "has to have one configuration");
   const IdentifyStudy study = run_watched("identifying", [&](const auto& keep_going) {

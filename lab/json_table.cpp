@@ -46,13 +46,6 @@ JsonColumn column(std::string head, const std::string& pointer, const NumberText
           }};
 }
 
-std::vector<JsonColumn> spread_columns(const std::string& pointer) {
-  return {column("median", pointer + "/median", chart::duration),
-          column("p99", pointer + "/p99", chart::duration),
-          column("p99.9", pointer + "/p999", chart::duration),
-          column("max", pointer + "/max", chart::duration)};
-}
-
 chart::TextTable json_table(std::string title, const std::vector<JsonColumn>& columns,
                             const file::Json& rows) {
   chart::TextTable table{std::move(title), {}, {}};

@@ -28,9 +28,6 @@ struct JsonColumn {
 JsonColumn column(std::string head, const std::string& pointer,
                   const NumberText& text = chart::decimal);
 
-/// The columns median, p99, p99.9 and max of times in µs.
-std::vector<JsonColumn> spread_columns(const std::string& pointer);
-
 /// A table with a line per row.
 chart::TextTable json_table(std::string title, const std::vector<JsonColumn>& columns,
                             const file::Json& rows);

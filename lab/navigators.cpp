@@ -10,8 +10,8 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/trained_model.hpp"
+#include "simulator/parameters.hpp"
 #include "study/open_loop_study.hpp"
-#include "vehicle/parameters.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -138,7 +138,7 @@ class ImuNavigator final : public Navigator {
   void draw_tilt(double time_s) {
     RandomStream random(static_cast<std::uint64_t>(std::llround(1000.0 * time_s)), "tilt");
     for (std::size_t axis = 0; axis < gravity_.size(); ++axis) {
-      gravity_[axis] = vehicle::kGravity * kTilt * random.normal();
+      gravity_[axis] = simulator::kGravity * kTilt * random.normal();
       before_[axis] += gravity_[axis];
     }
   }

@@ -10,7 +10,7 @@
 #include "lab/commands.hpp"
 #include "lab/drive_study.hpp"
 #include "lab/json_table.hpp"
-#include "vehicle/scenario_file.hpp"
+#include "simulator/scenario_file.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -95,9 +95,9 @@ std::string drivers_table(const DriveStudyPlan& plan, const file::Json& rows) {
 
 void run_plan(const PlanArguments& options) {
   DriveStudyPlan plan = options.plan;
-  plan.scenario = vehicle::read_scenario(scenario_file(options.scenario, "identify.toml"));
-  if (plan.scenario.log != vehicle::LogKind::six) {
-    vehicle::require_plane(plan.scenario.vehicle);
+  plan.scenario = simulator::read_scenario(scenario_file(options.scenario, "identify.toml"));
+  if (plan.scenario.log != simulator::LogKind::six) {
+    simulator::require_plane(plan.scenario.vehicle);
   }
   plan.scenario.seed = options.seed;
   if (options.rate_hz > 0.0) {

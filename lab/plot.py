@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws a picture of a JSON file that kelpie-lab writes: bench, control, dead-reckoning, diagnose.
+"""Draws a picture of a JSON file that kelpie-lab writes: control, dead-reckoning, diagnose.
 
-    lab/plot.py out/bench/bench.json [bench.png]
+    lab/plot.py out/control/control.json [control.png]
 
 Without a second name the picture stands beside the file. Needs python3-matplotlib.
 """
@@ -43,41 +43,6 @@ def finish(axes, title, x, y, log=""):
     axes.grid(True, alpha=0.3)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(fontsize="small")
-
-
-def survival(axes, times, label):
-    """The share of updates that took at least so long: shows the slowest of thousands."""
-    times = sorted(max(t, 1e-2) for t in times if t is not None)
-    if times:
-        axes.plot(times, [(len(times) - i) / len(times) for i in range(len(times))], label=label)
-
-
-def draw_bench(data):
-    growths = [(g, "window [samples]") for g in data["over_window"]]
-    growths += [(g, "number of inputs") for g in data["over_inputs"]]
-    figure, axes = grid(len(data["axes"]) + 1 + len(growths))
-    places = iter(axes)
-    share = "share that takes at least so long"
-    for axis in data["axes"]:
-        place = next(places)
-        survival(place, axis["path_whole"]["update_us"], "path")
-        survival(place, axis["solvers"][2]["update_us"], "SMO")
-        survival(place, axis["libsvm_us"], "LIBSVM from scratch")
-        survival(place, axis["learner"]["update_us"], "learner, all nodes")
-        survival(place, axis["learner"]["predict_us"], "learner, prediction")
-        simulated = " (simulation)" if axis["simulated"] else ""
-        finish(place, f"{Path(axis['stream']).name}{simulated}, {axis['axis']}, "
-                      f"ε = {axis['epsilon']}", "time of an update [µs]", share, "xy")
-    place = next(places)
-    survival(place, data["model"]["thread_us"], "time of the thread")
-    survival(place, data["model"]["wall_us"], "time on the wall")
-    finish(place, "model of three axes", "time of an update [µs]", share, "xy")
-    for growth, over in growths:
-        place = next(places)
-        place.plot(growth["sizes"], growth["path_us"], marker="o", label="path")
-        place.plot(growth["sizes"], growth["smo_us"], marker="s", label="SMO")
-        finish(place, f"{growth['axis']}: median update", over, "time [µs]", "xy")
-    return figure
 
 
 def draw_control(data):
@@ -140,8 +105,8 @@ def draw_diagnosis(data):
     return figure
 
 
-DRAW = {"kelpie-bench": draw_bench, "kelpie-control": draw_control,
-        "kelpie-reckoning": draw_reckoning, "kelpie-diagnosis": draw_diagnosis}
+DRAW = {"kelpie-control": draw_control, "kelpie-reckoning": draw_reckoning,
+        "kelpie-diagnosis": draw_diagnosis}
 
 
 def main(arguments):

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "core/angle.hpp"
+#include "core/bounded_minimum.hpp"
 #include "lab/controllers.hpp"
-#include "motion/bounded_minimum.hpp"
-#include "vehicle/parameters.hpp"
+#include "simulator/parameters.hpp"
 
 namespace kelpie::lab {
 namespace {

@@ -41,30 +41,6 @@ void summarise(PublishedRun& run) {
   run.end = run.r2.empty() ? std::numeric_limits<double>::quiet_NaN() : run.r2.back();
 }
 
-constexpr std::array kFigures = std::to_array<PeerFigure>({
-    {"recursive least squares, λ 0.98", "0.25 / 0.3", "0.644 0.573 0.399 0.546 0.469",
-     "0.873 0.703 0.615"},
-    {"recursive least squares, λ 0.995", "0.25 / 0.3", "0.722 0.730 0.517 0.604 0.619",
-     "0.971 0.897 0.961"},
-    {"recursive least squares, λ 0.999", "0.25 / 0.3", "0.742 0.747 0.197 0.384 0.649",
-     "0.995 0.322 0.992"},
-    {"LWPR", "13 / 18", "0.151 0.672 −0.046 0.204 0.603", "0.686 0.201 0.388"},
-    {"mixture of linear experts (IMLE)", "6 / 8", "0.239 0.642 −0.449 0.132 0.648",
-     "0.651 0.122 −0.100"},
-    {"sparse-spectrum GP, 200 features", "90 / 119", "0.975 0.994 −0.929 0.055 0.833",
-     "0.979 0.165 0.847"},
-    {"dlib krls, tolerance 0.001", "646 / 825", "0.971 0.996 −0.152 0.369 0.871",
-     "0.967 0.460 0.870"},
-    {"sparse on-line GP, 300", "547 / 636", "0.978 0.994 0.406 0.708 0.894", "0.494 −0.118 0.480"},
-    {"KRLS-T, 900", "1,958 / 2,119", "0.956 0.992 0.855 0.960 0.980", "0.607 0.547 0.377"},
-    {"GP on a window of 900", "936 / 1,027", "0.981 0.979 0.665 0.983 0.985", "0.752 0.793 0.690"},
-    {"locally growing GPs", "3.2 / 82", "0.842 0.995 −1.584 0.050 0.919", "0.676 −0.913 0.599"},
-    {"neural network 32×32, replay of 900", "105 / 135", "0.954 0.994 0.543 0.910 0.987",
-     "0.701 0.030 −0.155"},
-    {"LIBSVM from scratch on the last 900", "112,000 / 271,000", "0.973 0.970 0.613 0.972 0.977",
-     "0.970 0.966 0.970"},
-});
-
 // The column `split` of the file tells who trains (0) and who is held out (1).
 study::Split split_of(const log::Table& table, const log::Dataset& data) {
   const std::size_t column = table.find("split");
@@ -199,10 +175,6 @@ PublishedRun run_published(const log::Dataset& data, const std::vector<std::size
   }
   summarise(run);
   return run;
-}
-
-std::span<const PeerFigure> peer_figures() {
-  return kFigures;
 }
 
 PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,

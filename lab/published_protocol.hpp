@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -91,15 +90,6 @@ struct PeerRun {
   double median_us = 0.0;                      ///< time of an update, with other jobs in parallel
   double p99_us = 0.0;
 };
-
-/// A line of the table of earlier measurements: R² as text, separated by spaces.
-struct PeerFigure {
-  std::string_view learner;
-  std::string_view update_us;
-  std::string_view unmodelled;  ///< 1,000, end of 0, +500, +1,000, end of 1
-  std::string_view outliers;    ///< end of 0, +1,000, end of 1
-};
-std::span<const PeerFigure> peer_figures();  ///< The whole table.
 
 /// Reads a stream's file (columns conf, split, u, v, r, n1, n2, n3, du) and runs a learner on the
 /// training rows (split 0), scaled by the training rows of configuration 0. Throws InputError as

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "lab/controllers.hpp"
 
 namespace kelpie::lab {

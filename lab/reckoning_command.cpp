@@ -11,10 +11,10 @@
 #include "kelpie/core/random.hpp"
 #include "lab/commands.hpp"
 #include "lab/reckoning.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/learn.hpp"
 #include "study/simulated_log.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -52,13 +52,13 @@ ReckoningResult recorded(const ReckoningArguments& options) {
 }
 
 // The scenario's vehicle in a current from anywhere; 0: in calm water.
-std::vector<vehicle::LogRow> drive(vehicle::Scenario scenario, std::uint64_t seed, double current,
-                                   double seconds) {
+std::vector<simulator::LogRow> drive(simulator::Scenario scenario, std::uint64_t seed,
+                                     double current, double seconds) {
   scenario.seed = seed;
   const double from = RandomStream(seed, "current").uniform(0.0, 2.0 * std::numbers::pi);
   scenario.current_m_s = {current * std::cos(from), current * std::sin(from), 0.0};
   scenario.phases.back().duration_s = seconds;
-  return vehicle::simulate(scenario);
+  return simulator::simulate(scenario);
 }
 
 // Learned in calm water, then in a current, the first minutes of which are for finding it.
@@ -67,10 +67,10 @@ ReckoningResult simulated(const ReckoningArguments& options, std::size_t seed) {
   constexpr double kFindingS = 300.0;
   constexpr double kJudgedS = 1200.0;
   const std::string file = scenario_file(options.scenario, "small.toml");
-  const vehicle::Scenario scenario = vehicle::read_scenario(file);
-  std::vector<vehicle::LogRow> rows = drive(scenario, scenario.seed + 2 * seed, 0.0, kLearningS);
+  const simulator::Scenario scenario = simulator::read_scenario(file);
+  std::vector<simulator::LogRow> rows = drive(scenario, scenario.seed + 2 * seed, 0.0, kLearningS);
   const std::size_t learned = rows.size();
-  for (vehicle::LogRow& row :
+  for (simulator::LogRow& row :
        drive(scenario, scenario.seed + 2 * seed + 1, options.current, kFindingS + kJudgedS)) {
     row.t_s += kLearningS;
     row.configuration = 1;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "cli/output.hpp"
 #include "lab/commands.hpp"
 #include "lab/reproduction_report.hpp"
 
@@ -60,7 +61,7 @@ ReproductionPlan make_plan(const ReproduceArguments& options) {
 void run_reproduce(const ReproduceArguments& options) {
   const ReproductionPlan plan = make_plan(options);
   if (plan.data.empty()) {
-    fmt::print("The real log is not here: simulation only.\n\n");
+    cli::say("The real log is not here: simulation only.\n\n");
   }
   run_study({options.out, "reproduction", "reproducing"}, plan, reproduce,
             [](const Reproduction& result) {

@@ -18,12 +18,12 @@
 #include "log/dataset.hpp"
 #include "log/read_log.hpp"
 #include "model/axis_list.hpp"
+#include "simulator/scenario.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
-#include "vehicle/scenario.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -60,10 +60,10 @@ std::vector<std::string> scenario_names(const fs::path& folder) {
 }
 
 // The time up to which each row's phase lasts tells which phase that is.
-bool at_full_amplitude(const vehicle::Scenario& scenario, double time_s) {
+bool at_full_amplitude(const simulator::Scenario& scenario, double time_s) {
   constexpr double kHalfTickS = 0.005;
   double end_s = 0.0;
-  for (const vehicle::Phase& phase : scenario.phases) {
+  for (const simulator::Phase& phase : scenario.phases) {
     end_s += phase.duration_s;
     if (time_s < end_s + kHalfTickS) {
       return phase.amplitude >= 1.0;
@@ -74,15 +74,16 @@ bool at_full_amplitude(const vehicle::Scenario& scenario, double time_s) {
 
 // A scenario of a folder, with phases shortened to `share`. Throws InputError with the nearest
 // name for an unknown scenario.
-vehicle::Scenario planned_scenario(const fs::path& folder, const std::string& name, double share) {
+simulator::Scenario planned_scenario(const fs::path& folder, const std::string& name,
+                                     double share) {
   const fs::path file = folder / (name + kExtension);
   if (!fs::exists(file)) {
     const std::vector<std::string> names = scenario_names(folder);
     throw InputError({.file = folder.string(), .line = 0, .field = {}},
                      names.empty() ? "holds no scenario" : unknown_name(name, "scenario", names));
   }
-  vehicle::Scenario scenario = vehicle::read_scenario(file);
-  for (vehicle::Phase& phase : scenario.phases) {
+  simulator::Scenario scenario = simulator::read_scenario(file);
+  for (simulator::Phase& phase : scenario.phases) {
     phase.duration_s = std::max(1.0, std::round(phase.duration_s * share));
   }
   return scenario;
@@ -99,10 +100,10 @@ SeedData split_data(log::Dataset data, std::uint64_t seed) {
 
 // Simulates and splits with the seed. With `full_range_only` the held-out rows hold phases of full
 // amplitude only.
-SeedData simulated_data(vehicle::Scenario scenario, const std::string& source, std::uint64_t seed,
+SeedData simulated_data(simulator::Scenario scenario, const std::string& source, std::uint64_t seed,
                         bool full_range_only) {
   scenario.seed = seed;
-  const log::Table table = study::log_table(vehicle::simulate(scenario), source);
+  const log::Table table = study::log_table(simulator::simulate(scenario), source);
   SeedData result = split_data(log::make_dataset(table, log::guess_roles(table, {})), seed);
   if (full_range_only) {
     for (study::Split& split : result.splits) {
@@ -173,18 +174,17 @@ struct ReproductionJob {
 // after. False if the work was stopped. Rethrows exceptions of jobs.
 bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& plan, double from,
               double to) {
-  std::vector<jobs::Job> named;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    named.push_back({std::to_string(i), std::to_string(i), list[i].cost});
+  std::vector<jobs::Job> costs;
+  for (const ReproductionJob& one : list) {
+    costs.push_back({.cost = one.cost});
   }
-  const auto work = [&](const jobs::Job& job, const jobs::Advance& advance) {
-    const ReproductionJob& one = list[std::stoul(job.task)];
-    JobProgress progress(advance, one.cost);
-    one.work(progress);
+  const auto work = [&](std::size_t i, const jobs::Advance& advance) {
+    JobProgress progress(advance, list[i].cost);
+    list[i].work(progress);
     return std::string();
   };
   return jobs::make_thread_executor(plan.threads)
-      ->run({.jobs = named,
+      ->run({.jobs = costs,
              .work = work,
              .done = [](std::size_t, const std::string&) {},
              .keep_going =
@@ -439,7 +439,7 @@ class Runner {
   const ReproductionPlan& plan_;
   Reproduction result_;
   log::Dataset real_;
-  std::vector<vehicle::Scenario> scenarios_;  // of the first courses, which are simulated
+  std::vector<simulator::Scenario> scenarios_;  // of the first courses, which are simulated
   std::vector<Course> courses_;
   std::vector<Contender> published_;
   PublishedRows published_rows_;

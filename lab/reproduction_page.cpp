@@ -6,7 +6,6 @@
 
 #include "chart/page.hpp"
 #include "chart/wording.hpp"
-#include "core/text.hpp"
 #include "kelpie/model/settings.hpp"
 #include "lab/claims.hpp"
 #include "lab/reproduction_report.hpp"
@@ -176,20 +175,6 @@ std::string peer_table(const Reproduction& result, std::string_view stream) {
     for (const double r2 : run.r2) {
       row.push_back(chart::decimal(r2));
     }
-  }
-  if (stream == "both") {
-    return chart::html_table(head, rows);
-  }
-  for (const PeerFigure& figure : peer_figures()) {
-    const bool unmodelled = stream == "unmodelled";
-    std::vector<std::string> r2 =
-        split_text(std::string(unmodelled ? figure.unmodelled : figure.outliers), ' ');
-    for (const std::ptrdiff_t missing :
-         unmodelled ? std::vector<std::ptrdiff_t>{4} : std::vector<std::ptrdiff_t>{0, 2, 4}) {
-      r2.insert(r2.begin() + missing, "");
-    }
-    r2.insert(r2.begin(), {std::string(figure.learner), std::string(figure.update_us)});
-    rows.push_back(std::move(r2));
   }
   return chart::html_table(head, rows);
 }
@@ -489,9 +474,9 @@ std::string published_section(const Reproduction& result) {
 
 std::string peers_section(const Reproduction& result) {
   std::string text = note(
-      "Simulated streams of this project, 10,000 rows of each of two configurations, "
-      "target du. R² on held-out rows at the given samples. Above: measured now. Below: "
-      "as measured by the project earlier, one core; its times are of that machine.");
+      "Simulated streams of this project, 10,000 rows of each of two configurations, target du. R² "
+      "on held-out rows at the given samples. docs/measured/reproduction.md has other learners, as "
+      "measured earlier.");
   if (result.peers.empty()) {
     return text + note(result.plan.peers
                            ? "Skipped: the streams (peer_streams/*.csv) were not there."
@@ -500,12 +485,7 @@ std::string peers_section(const Reproduction& result) {
   for (const std::string_view stream : kPeerStreams) {
     text += chart::heading(3, stream) + peer_table(result, stream);
   }
-  return text + note(
-                    "On “both”, as measured earlier (end of 0 / 2,000 after the switch; opponents "
-                    "tuned again for outliers): recursive least squares with a Huber clip 0.66 / "
-                    "0.48, KRLS-T 300 0.91 / 0.82, GP window 0.85 / 0.78, neural network with "
-                    "replay 0.94 / 0.85, SVR on the last 900 (C 100) 0.961 / 0.967, the paper's "
-                    "learner without its outlier rule (C 100) 0.989 / 0.941.");
+  return text;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "kelpie/learner/settings.hpp"
+#include "kelpie/svr/settings.hpp"
 #include "svr/path_solver.hpp"
 #include "svr/sample_store.hpp"
 #include "svr/smo_solver.hpp"

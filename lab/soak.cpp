@@ -1,43 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/soak.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "chart/wording.hpp"
 #include "core/quantile.hpp"
 #include "lab/sliding_window.hpp"
 #include "lab/update_times.hpp"
 
 namespace kelpie::lab {
-namespace {
-
-SoakRun soak(const SoakPlan& plan, Storage storage, std::size_t done_before) {
-  OnlineSvrSettings settings;
-  settings.buffer = static_cast<int>(plan.window);
-  settings.storage = storage;
-  SlidingWindow window(SoakStream::kInputs, settings);
-  SoakStream stream(plan.seed);
-  SoakRun run{.storage = storage};
-  run.gap_allowed = storage == Storage::float64 ? 1e-6 : 1e-4;
-  std::vector<double> times;
-  times.reserve(plan.updates);
-  while (run.updates < plan.updates && plan.keep_going(done_before + run.updates)) {
-    const SoakStream::Sample sample = stream.next();
-    SolveReport report;
-    times.push_back(timed_us([&] { report = window.step(sample.z, sample.y); }));
-    run.fallbacks += report.fell_back ? 1 : 0;
-    if (++run.updates % plan.check_every == 0 || run.updates == plan.updates) {
-      run.gap = std::max(run.gap, kkt_afresh(window.problem()).gap());
-    }
-  }
-  if (!times.empty()) {
-    run.max_us = std::ranges::max(times);
-    run.median_us = quantile(times, 0.5);
-  }
-  return run;
-}
-
-}  // namespace
 
 SoakStream::SoakStream(std::uint64_t seed) : random_(seed, "soak") {
   for (double& phase : phase_) {
@@ -70,12 +44,37 @@ double SoakStream::function(const std::array<double, kInputs>& z) const {
          0.2 * std::cos(drift_) * z[4] - 0.1 * z[5];
 }
 
-std::vector<SoakRun> run_soak(const SoakPlan& plan) {
-  std::vector<SoakRun> runs;
-  for (const Storage storage : {Storage::float64, Storage::float32}) {
-    runs.push_back(soak(plan, storage, runs.empty() ? 0 : runs.front().updates));
+SoakRun run_soak(const SoakPlan& plan) {
+  OnlineSvrSettings settings;
+  settings.buffer = static_cast<int>(plan.window);
+  settings.storage = Storage::float64;
+  SlidingWindow window(SoakStream::kInputs, settings);
+  SoakStream stream(plan.seed);
+  SoakRun run;
+  std::vector<double> times;
+  times.reserve(plan.updates);
+  while (run.updates < plan.updates && plan.keep_going(run.updates)) {
+    const SoakStream::Sample sample = stream.next();
+    SolveReport report;
+    times.push_back(timed_us([&] { report = window.step(sample.z, sample.y); }));
+    run.fallbacks += report.fell_back ? 1 : 0;
+    if (++run.updates % plan.check_every == 0 || run.updates == plan.updates) {
+      run.gap = std::max(run.gap, kkt_afresh(window.problem()).gap());
+    }
   }
-  return runs;
+  if (!times.empty()) {
+    run.max_us = std::ranges::max(times);
+    run.median_us = quantile(times, 0.5);
+  }
+  return run;
+}
+
+std::string soak_text(const SoakRun& run) {
+  return fmt::format(
+      "{} updates, {} fallbacks, largest gap {:.1e} (allowed {:.0e}), median {}, max {}: {}",
+      chart::grouped(run.updates), run.fallbacks, run.gap, SoakRun::kGapAllowed,
+      chart::duration(run.median_us), chart::duration(run.max_us),
+      run.good() ? "good" : "NOT GOOD");
 }
 
 }  // namespace kelpie::lab

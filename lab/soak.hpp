@@ -44,29 +44,31 @@ struct SoakPlan {
   std::size_t window = 300;
   std::size_t check_every = 1000;
   std::uint64_t seed = 1;
-  /// Called now and then with the finished updates of both runs; false stops the work.
+  /// Called now and then with the finished updates; false stops the work.
   std::function<bool(std::size_t)> keep_going = [](std::size_t) { return true; };
 };
 
-/// The results of a run, and the allowed gap.
+/// The results of a run.
 struct SoakRun {
-  Storage storage = Storage::float64;
   std::size_t updates = 0;  ///< fewer than planned when stopped
   std::size_t fallbacks = 0;
-  double gap = 0.0;  ///< largest KKT gap on residuals computed afresh
-  double gap_allowed = 0.0;
+  double gap = 0.0;        ///< largest KKT gap on residuals computed afresh
   double median_us = 0.0;  ///< of an update
   double max_us = 0.0;
+
+  static constexpr double kGapAllowed = 1e-6;
 
   /// Whether the gap is allowed and at most an update in 100,000 (1 in a short run) needed SMO.
   bool good() const {
     constexpr std::size_t kPerFallback = 100'000;
-    return gap <= gap_allowed && fallbacks <= (updates + kPerFallback - 1) / kPerFallback;
+    return gap <= kGapAllowed && fallbacks <= (updates + kPerFallback - 1) / kPerFallback;
   }
 };
 
-/// A sliding window over a SoakStream in double, and in float. The same plan gives the same gaps
-/// and fallbacks.
-std::vector<SoakRun> run_soak(const SoakPlan& plan);
+/// A sliding window over a SoakStream. The same plan gives the same gaps and fallbacks.
+SoakRun run_soak(const SoakPlan& plan);
+
+/// A line for a terminal: gap, allowed gap, times, and the verdict.
+std::string soak_text(const SoakRun& run);
 
 }  // namespace kelpie::lab

@@ -2,7 +2,7 @@
 #include "lab/sparse_online_svr.hpp"
 
 #include "kelpie/svr/resources.hpp"
-#include "learner/valid_sample.hpp"
+#include "svr/valid_sample.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kelpie/core/setting.hpp"
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "lab/kernel_inverse.hpp"
 #include "svr/dual_problem.hpp"
 #include "svr/path_solver.hpp"

@@ -10,6 +10,7 @@
 #include <limits>
 #include <string>
 
+#include "chart/text_table.hpp"
 #include "chart/wording.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
@@ -98,6 +99,52 @@ std::string share_text(double share) {
   return share > 0.0 ? fmt::format("{:.4g} %", 100.0 * share) : "";
 }
 
+chart::TextTable histogram_table(const UpdateTimes& times) {
+  chart::TextTable table{"Single updates of a model with three axes",
+                         {"time", "thread", "share", "wall", "share"},
+                         {}};
+  const std::vector<TimesBin> bins = histogram_of(times);
+  const auto all = static_cast<double>(times.thread_us.size());
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    const bool last = k + 1 == bins.size();
+    const std::string edge = chart::duration(last ? bins[k - 1].below_us : bins[k].below_us);
+    table.rows.push_back({(last ? "from " : "below ") + edge, chart::grouped(bins[k].thread),
+                          share_text(static_cast<double>(bins[k].thread) / all),
+                          chart::grouped(bins[k].wall),
+                          share_text(static_cast<double>(bins[k].wall) / all)});
+  }
+  return table;
+}
+
+chart::TextTable slowest_table(const UpdateTimes& times) {
+  chart::TextTable table{"The slowest of them", {"", "median", "p99", "p99.9", "max"}, {}};
+  const auto row = [&](const std::string& name, const std::vector<double>& all) {
+    const study::Quantiles spread = study::quantiles_of(all);
+    table.rows.push_back({name, chart::duration(spread.median), chart::duration(spread.p99),
+                          chart::duration(spread.p999), chart::duration(spread.max)});
+  };
+  row("thread", times.thread_us);
+  row("wall", times.wall_us);
+  if (times.budget_us > 0.0) {
+    table.rows.push_back({"wanted", "", "", "", "≤ " + chart::duration(1.5 * times.budget_us)});
+  } else {
+    table.rows.push_back({"wanted", "", "", "≤ 3 ms", "≤ 5 ms"});
+  }
+  return table;
+}
+
+std::string times_method(const UpdateTimes& times) {
+  return fmt::format(
+      "A model of three axes, default preset{}, drives for {} updates; found were {} changes of "
+      "the vehicle on one of the axes, {} of them returns, and {} new scales. Times are of single "
+      "updates, all axes together: the thread's own (CLOCK_THREAD_CPUTIME_ID) and that on the "
+      "wall, "
+      "which holds what else the machine did.",
+      times.budget_us > 0.0 ? fmt::format(", a budget of {}", chart::duration(times.budget_us))
+                            : "",
+      chart::grouped(times.thread_us.size()), times.changes, times.recalls, times.rescales);
+}
+
 }  // namespace
 
 double thread_time_us() {
@@ -159,50 +206,9 @@ std::vector<TimesBin> histogram_of(const UpdateTimes& times) {
   return bins;
 }
 
-chart::TextTable histogram_table(const UpdateTimes& times) {
-  chart::TextTable table{"Single updates of a model with three axes",
-                         {"time", "thread", "share", "wall", "share"},
-                         {}};
-  const std::vector<TimesBin> bins = histogram_of(times);
-  const auto all = static_cast<double>(times.thread_us.size());
-  for (std::size_t k = 0; k < bins.size(); ++k) {
-    const bool last = k + 1 == bins.size();
-    const std::string edge = chart::duration(last ? bins[k - 1].below_us : bins[k].below_us);
-    table.rows.push_back({(last ? "from " : "below ") + edge, chart::grouped(bins[k].thread),
-                          share_text(static_cast<double>(bins[k].thread) / all),
-                          chart::grouped(bins[k].wall),
-                          share_text(static_cast<double>(bins[k].wall) / all)});
-  }
-  return table;
-}
-
-chart::TextTable slowest_table(const UpdateTimes& times) {
-  chart::TextTable table{"The slowest of them", {"", "median", "p99", "p99.9", "max"}, {}};
-  const auto row = [&](const std::string& name, const std::vector<double>& all) {
-    const study::Quantiles spread = study::quantiles_of(all);
-    table.rows.push_back({name, chart::duration(spread.median), chart::duration(spread.p99),
-                          chart::duration(spread.p999), chart::duration(spread.max)});
-  };
-  row("thread", times.thread_us);
-  row("wall", times.wall_us);
-  if (times.budget_us > 0.0) {
-    table.rows.push_back({"wanted", "", "", "", "≤ " + chart::duration(1.5 * times.budget_us)});
-  } else {
-    table.rows.push_back({"wanted", "", "", "≤ 3 ms", "≤ 5 ms"});
-  }
-  return table;
-}
-
-std::string times_method(const UpdateTimes& times) {
-  return fmt::format(
-      "A model of three axes, default preset{}, drives for {} updates; found were {} changes of "
-      "the vehicle on one of the axes, {} of them returns, and {} new scales. Times are of single "
-      "updates, all axes together: the thread's own (CLOCK_THREAD_CPUTIME_ID) and that on the "
-      "wall, "
-      "which holds what else the machine did.",
-      times.budget_us > 0.0 ? fmt::format(", a budget of {}", chart::duration(times.budget_us))
-                            : "",
-      chart::grouped(times.thread_us.size()), times.changes, times.recalls, times.rescales);
+std::string times_table(const UpdateTimes& times) {
+  return chart::wrapped(times_method(times)) + "\n\n" + chart::table_text(histogram_table(times)) +
+         chart::table_text(slowest_table(times));
 }
 
 }  // namespace kelpie::lab

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "chart/text_table.hpp"
-
 namespace kelpie::lab {
 
 double thread_time_us();  ///< Processor time of the calling thread.
@@ -56,10 +54,7 @@ struct TimesBin {
 };
 std::vector<TimesBin> histogram_of(const UpdateTimes& times);
 
-chart::TextTable histogram_table(const UpdateTimes& times);  ///< The histogram.
-chart::TextTable slowest_table(const UpdateTimes& times);    ///< Quantiles, and the targets.
-
-/// The method of measurement, in a few sentences.
-std::string times_method(const UpdateTimes& times);
+/// Method, histogram, quantiles and targets, for a terminal.
+std::string times_table(const UpdateTimes& times);
 
 }  // namespace kelpie::lab

@@ -20,6 +20,6 @@ cd "$work"
 "${CXX:-c++}" -std=c++20 $sanitizer -I"$source/include" -I"$source/src/library" \
   -isystem /usr/include/eigen3 -DEigen=kelpie_eigen \
   "$source/tests/tools/format/block_race/race.cpp" \
-  "$source/src/library/model/model_block.cpp" vehicle.o \
+  "$source/src/library/files/model_block.cpp" vehicle.o \
   -Wl,--allow-multiple-definition "$build/src/library/libkelpie.a" -lhwy -lm -o race
 ./race "$model" vehicle.block "${3:-60}" "${4:-100}"

@@ -4,10 +4,9 @@
 
     python3 scripts/fleet_kills.py KELPIE [STUDIES [SEED]]
 
-KELPIE is the program, with libkelpie_mpi.so beside it or installed. Of STUDIES (100) half run as two
-or three ranks under mpirun, half as two or three parts at a time. At a random moment a rank or part
+KELPIE is the program. STUDIES (100) run as two or three parts at a time. At a random moment a part
 gets SIGKILL, several times in a study; then the same command is given again until it ends by itself,
-and parts are merged. After every kill all journals have to be readable, with all results that were
+and the parts are merged. After every kill all journals have to be readable, with all results that were
 there before, and no run twice in a journal; the result has to be that of one process, but for its
 times. Before, `kelpie learn` with a checkpoint every 20 samples is killed STUDIES times and goes on
 from its checkpoint (docs/reference/files.md): the newest or the one before has to be whole
@@ -17,11 +16,9 @@ kill. Exit code 1 where something isn't so.
 
 import json
 import math
-import os
 import random
 import re
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -41,7 +38,6 @@ name = "{buffer}"
 preset = "small"
 set = {{warmup = 20, buffer = {buffer}}}
 """
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
 
 def write_study(folder):
@@ -85,35 +81,18 @@ def journal_lines(folder):
     return lines
 
 
-def ranks_of(mpirun):
-    children = Path(f"/proc/{mpirun}/task/{mpirun}/children")
-    try:
-        return [int(pid) for pid in children.read_text().split()]
-    except FileNotFoundError:
-        return []
-
-
 class Study:
     """A study in a folder of its own, started again and again."""
 
-    def __init__(self, kelpie, folder, out, processes, in_parts):
+    def __init__(self, kelpie, folder, out, parts):
         self.command = [kelpie, "study", "fleet.toml", "--threads", "1", "--out", out]
-        self.folder, self.processes, self.in_parts = folder, processes, in_parts
-        numbers = range(1, processes + 1)
-        self.todo = [f"{k}/{processes}" for k in numbers] if in_parts else [None]
+        self.folder = folder
+        self.todo = [f"{k}/{parts}" for k in range(1, parts + 1)]
 
     def start(self):
         with open(self.folder / "said", "a", encoding="utf-8") as said:
-            mpirun = ["mpirun", "--oversubscribe", "-n", str(self.processes)]
-            commands = [self.command + ["--part", part] if self.in_parts else mpirun + self.command
-                        for part in self.todo]
-            return [subprocess.Popen(command, cwd=self.folder, env=ENVIRONMENT, stdout=said,
-                                     stderr=said) for command in commands]
-
-    def victims(self, running):
-        if self.in_parts:
-            return [process.pid for process in running if process.poll() is None]
-        return ranks_of(running[0].pid)
+            return [subprocess.Popen(self.command + ["--part", part], cwd=self.folder, stdout=said,
+                                     stderr=said) for part in self.todo]
 
     def attack(self, dice, seconds):
         """Starts what is to be done, and kills a process unless all have ended before."""
@@ -122,18 +101,14 @@ class Study:
             end = time.monotonic() + seconds
             while time.monotonic() < end and any(process.poll() is None for process in running):
                 time.sleep(0.01)
-            if victims := self.victims(running):
-                try:
-                    os.kill(dice.choice(victims), signal.SIGKILL)
-                except ProcessLookupError:
-                    pass
+            if victims := [process for process in running if process.poll() is None]:
+                dice.choice(victims).kill()
         codes = [process.wait(timeout=600) for process in running]
         self.todo = [part for part, code in zip(self.todo, codes) if code != 0]
 
     def finish(self):
-        if self.in_parts:
-            subprocess.run(self.command + ["--merge"], cwd=self.folder, check=True,
-                           stdout=subprocess.DEVNULL)
+        subprocess.run(self.command + ["--merge"], cwd=self.folder, check=True,
+                       stdout=subprocess.DEVNULL)
 
 
 def is_whole(checkpoint):
@@ -196,16 +171,17 @@ def main():
         return without_times(json.loads((folder / out / "study.json").read_text()))
 
     begin = time.monotonic()
-    one = Study(kelpie, folder, "undisturbed", 2, False)
+    one = Study(kelpie, folder, "undisturbed", 2)
     one.attack(dice, None)
     assert not one.todo, (folder / "said").read_text()
+    one.finish()
     usual_s = time.monotonic() - begin
     wanted = result("undisturbed")
     runs = len(journal_lines(folder / "undisturbed"))
     starts = kills = kept = 0
     for number in range(studies):
         out = f"study{number}"
-        study = Study(kelpie, folder, out, dice.choice([2, 3]), number % 2 == 1)
+        study = Study(kelpie, folder, out, dice.choice([2, 3]))
         before, left = {}, dice.randint(1, KILLS)
         while study.todo:
             seconds = dice.uniform(0.2, 0.9) * usual_s if left > 0 else None

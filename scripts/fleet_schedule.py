@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Simulates how long the runs of a study take on ranks or in parts (docs/howto/studies.md).
+"""Simulates how long the runs of a study take in parts (docs/howto/studies.md).
 
-    python3 scripts/fleet_schedule.py JOURNAL [--jobs N] [--workers 1,64,1024] [--take-ms 1]
+    python3 scripts/fleet_schedule.py JOURNAL [--jobs N] [--workers 1,64,1024]
                                       [--buffers LEARNER=SAMPLES,...]
 
 JOURNAL is the journal.jsonl of a study; its runs' measured seconds are the job times. The estimated
 cost is the number of rows times 100 + the learner's buffer (900 where --buffers is silent); the
-program has the log's bytes for rows. --jobs draws as many jobs with replacement. Two schedules of
-one worker per rank or part: `counter`, each rank takes its next job from the shared counter, the
-costly first, in `--take-ms`; `parts`, jobs are dealt before, as jobs::deal_by_cost does: bundles of
-each learner by longest processing time first, the costliest bundle to the part with the least.
+program has the log's bytes for rows. --jobs draws as many jobs with replacement. Jobs are
+dealt as jobs::deal_by_cost does: bundles of each learner by longest processing time first, the
+costliest bundle to the part with the least.
 Efficiency is the jobs' seconds over the makespan of all workers.
 """
 
@@ -33,13 +32,6 @@ def read_jobs(journal, buffers):
     return jobs
 
 
-def counter(jobs, workers, take_s):
-    ends = [0.0] * workers
-    for _, seconds, _ in jobs:
-        heapq.heapreplace(ends, ends[0] + take_s + seconds)
-    return max(ends)
-
-
 def parts(jobs, workers):
     loads = [(0.0, 0.0)] * workers  # estimated, seconds
     for learner in dict.fromkeys(job[2] for job in jobs):  # that of the costliest job first
@@ -58,7 +50,6 @@ def main():
     parser.add_argument("journal", type=Path)
     parser.add_argument("--jobs", type=int)
     parser.add_argument("--workers", default="1,64,1024")
-    parser.add_argument("--take-ms", type=float, default=1.0)
     parser.add_argument("--buffers", default="")
     options = parser.parse_args()
     buffers = {name: int(size) for name, size in
@@ -69,11 +60,10 @@ def main():
     jobs.sort(key=lambda job: -job[0])
     total_s = sum(job[1] for job in jobs)
     print(f"{len(jobs)} jobs of {total_s:.0f} s together, the longest {max(jobs, key=lambda j: j[1])[1]:.2f} s")
-    print(f"{'workers':>8} {'counter':>10} {'efficiency':>10} {'parts':>10} {'efficiency':>10}")
+    print(f"{'parts':>8} {'makespan':>10} {'efficiency':>10}")
     for workers in map(int, options.workers.split(",")):
-        spans = counter(jobs, workers, 1e-3 * options.take_ms), parts(jobs, workers)
-        print(f"{workers:8}" + "".join(f" {span:8.1f} s {total_s / (span * workers):10.3f}"
-                                       for span in spans))
+        span = parts(jobs, workers)
+        print(f"{workers:8} {span:8.1f} s {total_s / (span * workers):10.3f}")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes the Debian source package of the last commit, its packages and the portable wheel, in a clean
 # root of Debian 12: lintian reads the packages, and debian/tests run with the packages installed in
-# another root. For arm64 Debian's cross compiler builds (no Python, no MPI, no manual page).
+# another root. For arm64 Debian's cross compiler builds (no Python, no manual page).
 # Usage: scripts/packages.sh [amd64|arm64] [FOLDER]   (default: this machine's, build/packages)
 # Debian packages: mmdebstrap, dpkg-dev. KELPIE_PLACE: the folder in the root where packages are
 # built (/build); KELPIE_RUN: a command that runs the build, such as `nice -n 10`.
@@ -71,7 +71,7 @@ mmdebstrap --quiet --variant=buildd --format=null --dpkgopt=force-unsafe-io \
 if [ "$architecture" = "$here" ]; then
   echo "Installing its packages in another one, and running their tests"
   # shellcheck disable=SC2016
-  packages=("$out"/{kelpie-{tools,live,mpi,doc},libkelpie-dev,python3-kelpie}_"$version"_*.deb)
+  packages=("$out"/{kelpie-{tools,live,doc},libkelpie-dev,python3-kelpie}_"$version"_*.deb)
   mmdebstrap --quiet --variant=apt --format=null --dpkgopt=force-unsafe-io \
     --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
     --include="g++,pkg-config,$(IFS=,; echo "${packages[*]}")" \

@@ -59,9 +59,9 @@ def learning_cases():
     for log in sorted((DATA / "holohover").glob("*.csv")):
         yield "holohover_" + log.stem.split("_")[-1], log, HOVER
     for log in sorted((DATA / "peer_streams").glob("*.csv")):
-        yield "peer_" + log.stem, log, ["--rate", "10"]
+        yield "peer_" + log.stem, log, ["--rate", "1"]
     for log in sorted((DATA / "plants").glob("*.csv.gz")):
-        inputs, targets = PLANTS[log.name.split("_")[0]]
+        inputs, targets = PLANTS[log.name.split("_")[0].removesuffix("lawn")]
         yield "plant_" + log.name[:-7], log, [
             "--time", "t", "--inputs", inputs, "--targets", targets, "--split", "column:held",
             "--configuration", "conf"]

@@ -30,13 +30,12 @@ LICENCES = {
     "glibc": "LGPL-2.1-or-later", "hdf5": "BSD-3-Clause", "highway": "Apache-2.0",
     "libmatio": "BSD-2-Clause", "libmicrohttpd": "LGPL-2.1-or-later", "libzip": "BSD-3-Clause",
     "libzstd": "BSD-3-Clause OR GPL-2.0-only", "linux": "GPL-2.0-only WITH Linux-syscall-note",
-    "lz4": "BSD-2-Clause", "nlohmann-json3": "MIT", "openmpi": "BSD-3-Clause",
+    "lz4": "BSD-2-Clause", "nlohmann-json3": "MIT",
     "openssl": "Apache-2.0", "pybind11": "BSD-3-Clause", "python3": "PSF-2.0",
     "sqlite3": "blessing", "systemd": "LGPL-2.1-or-later", "tinyxml2": "Zlib",
     "tomlplusplus": "MIT", "yaml-cpp": "MIT", "zlib": "Zlib",
 }
 TOOLCHAIN = re.compile(r"gcc-\d+|glibc|linux|cross-toolchain-base")
-PLUGIN = "kelpie_mpi.dir"  # a file of its own
 
 
 def lines_of(*command: str, may_fail: bool = False) -> list[str]:
@@ -58,11 +57,9 @@ def headers_of(build: Path, rooms: tuple[str, ...]) -> set[str]:
                 if wanted:
                     headers.add(line.strip())
             elif ": #deps" in line:
-                wanted = line.startswith(rooms) and "(VALID)" in line and PLUGIN not in line
+                wanted = line.startswith(rooms) and "(VALID)" in line
     for room in rooms:  # of Make
         for record in (build / room).rglob("*.o.d"):
-            if PLUGIN in str(record):
-                continue
             words = record.read_text(encoding="utf-8").replace("\\\n", " ").split()
             headers.update(word for word in words if word.startswith("/"))
     return {os.path.realpath(header) for header in headers if header.startswith("/usr/")}

@@ -26,12 +26,6 @@ inline std::filesystem::path data_file(const std::string& name) {
   return {};
 }
 
-/// Whether tests run at full size: $KELPIE_THOROUGH is set. Otherwise a test that is as good with
-/// less takes the share that fits in the ten minutes of ./test.sh.
-inline bool thorough() {
-  return std::getenv("KELPIE_THOROUGH") != nullptr;  // NOLINT: no thread writes it
-}
-
 /// A folder of its own for one test, gone afterwards.
 class TemporaryFolder {
  public:

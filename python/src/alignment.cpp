@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 
 #include <pybind11/stl.h>
 

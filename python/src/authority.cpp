@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 
 namespace kelpie::python {

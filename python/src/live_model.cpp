@@ -10,13 +10,13 @@
 
 #include "core/text.hpp"
 #include "file/json.hpp"
+#include "files/model_json.hpp"
 #include "format/checkpoint_file.hpp"
 #include "format/model_parts.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "model/dynamics_axis.hpp"
-#include "model/model_json.hpp"
 #include "study/nominal.hpp"
 
 namespace kelpie::python {

@@ -12,7 +12,7 @@
 #include "bindings.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "rows.hpp"
 
 namespace kelpie::python {

@@ -22,7 +22,7 @@ namespace {
 
 namespace py = pybind11;
 
-// One at a time: commands keep what they say, and handle signals, for the whole process.
+// One at a time: commands print, and handle signals, for the whole process.
 std::string run_command(const std::vector<std::string>& words) {
   static std::mutex one;
   const py::gil_scoped_release release;
@@ -33,9 +33,10 @@ std::string run_command(const std::vector<std::string>& words) {
   cli::add_compare(app);
   cli::add_tune(app);
   cli::add_identify(app);
-  const cli::KeptOutput output;
+  const cli::TextStream said;
+  const cli::StreamGuard guard({.out = said.file(), .err = said.file()});
   cli::run_command(app, words);
-  return output.text();
+  return said.text();
 }
 
 py::object scalar_of(const YAML::Node& node) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <map>
@@ -19,6 +20,7 @@ namespace kelpie::docs_test {
 namespace {
 
 using house_test::kRoot;
+using house_test::lines_of;
 using house_test::fs::path;
 
 constexpr std::size_t kMostPages = 25;
@@ -219,6 +221,23 @@ TEST(Docs, AnchorsAndKeysAreAsMeant) {
   EXPECT_EQ(citation_key("Gibbs & Candès 2021"), "gibbs2021");
   EXPECT_EQ(citation_key("Nguyen-Tuong et al. 2009"), "nguyentuong2009");
   EXPECT_EQ(citation_key("von Benzon et al. 2022"), "vonbenzon2022");
+}
+
+// A newcomer's first two commands, side by side, before anything else.
+TEST(Docs, TheReadmeBeginsWithItsTwoCommands) {
+  std::vector<std::string> before;
+  for (const std::string& line : lines_of(kRoot / "README.md")) {
+    if (line.starts_with("## ")) {
+      break;
+    }
+    before.push_back(line);
+  }
+  const auto row = [&](const std::string& begin) {
+    return std::ranges::find_if(before, [&](const auto& line) { return line.starts_with(begin); });
+  };
+  const auto run = row("| `./run.sh` |");
+  ASSERT_NE(run, before.end());
+  EXPECT_EQ(row("| `./test.sh` |"), run + 1);
 }
 
 }  // namespace

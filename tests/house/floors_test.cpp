@@ -28,11 +28,17 @@ const Building kLibrary{
     {"core", {}},
     {"svr", {"core"}},
     {"motion", {"core"}},
+    {"alignment", {"motion", "core"}},
+    {"vehicle", {"motion", "core"}},
+    {"identify", {"alignment", "motion", "core"}},
     {"stream", {"motion", "core"}},
     {"learner", {"motion", "svr", "core"}},
-    {"model", {"learner", "motion", "svr", "core"}},
+    {"model", {"learner", "vehicle", "alignment", "motion", "svr", "core"}},
+    {"files", {"model", "alignment", "motion", "core"}},
     {"navigation", {"model", "core"}},
-    {"c", {"navigation", "model", "learner", "motion", "stream", "svr", "core"}},
+    {"c",
+     {"navigation", "files", "model", "learner", "vehicle", "alignment", "motion", "stream", "svr",
+      "core"}},
 };
 
 // Rooms of the other buildings, and which of these rooms each may know; for rooms of the library,
@@ -46,17 +52,16 @@ const Building kLogs{
 };
 const Building kTools{
     {"jobs", {"file"}},
-    {"mpi", {"jobs"}},
-    {"vehicle", {"file"}},
+    {"simulator", {"file"}},
     {"chart", {}},
-    {"study", {"jobs", "log", "vehicle", "file"}},
-    {"format", {"study", "log", "vehicle", "file"}},
+    {"study", {"jobs", "log", "simulator", "file"}},
+    {"format", {"study", "log", "simulator", "file"}},
     {"fmu", {"format", "file"}},
     {"fleet", {"format", "study", "jobs", "log", "file"}},
     {"health", {"study", "log", "file"}},
     {"report", {"fleet", "health", "format", "study", "log", "bag", "chart", "file"}},
     {"cli",
-     {"report", "fmu", "fleet", "health", "format", "study", "jobs", "log", "bag", "vehicle",
+     {"report", "fmu", "fleet", "health", "format", "study", "jobs", "log", "bag", "simulator",
       "chart", "file"}},
 };
 const Building kLive{
@@ -67,18 +72,18 @@ const Building kLive{
     {"web", {"live", "report", "study", "log", "chart", "file"}},
     {"console",
      {"web", "live", "ros", "autopilot", "cli", "report", "format", "study", "log", "bag",
-      "vehicle", "chart", "file"}},
+      "simulator", "chart", "file"}},
 };
 const std::map<std::string, const Building*> kAroundTheLibrary{
     {"logs", &kLogs}, {"tools", &kTools}, {"live", &kLive}};
 
 // Rooms that know nothing of learning: of the library, these rooms see kNumbers alone.
-const Rooms kWithoutLearning{"file",    "jobs", "mpi", "vehicle", "wire",
-                             "mavlink", "bag",  "dds", "log",     "chart"};
+const Rooms kWithoutLearning{"file", "jobs", "simulator", "wire", "mavlink",
+                             "bag",  "dds",  "log",       "chart"};
 const Rooms kNumbers{"core", "motion", "stream"};
 
 // The main program adds the commands of kelpie-live, where that building stands.
-const std::string kProgram = "main.cpp";
+const std::string kProgram = "program.cpp";
 
 struct Include {
   path file;
@@ -200,7 +205,7 @@ TEST(Floors, ARoomAroundTheLibraryLivesInItsNamespace) {
       // The commands of kelpie-live join those of the program.
       const std::string name = room == "console" ? "cli" : room;
       for (const path& file : files_below({path("src") / building / room})) {
-        if (file.filename() == kProgram) {
+        if (file.filename() == "main.cpp") {
           continue;
         }
         bool found = false;

@@ -40,7 +40,6 @@ const std::map<std::string, Names> kKeys{
     {"tinyxml2", {"tinyxml2", "libtinyxml2-dev"}},
     {"libzip", {"libzip-dev", "libzip-dev"}},
     {"Threads", {"", ""}},
-    {"ompi-c", {"", "libopenmpi-dev"}},
     {"libcrypto", {"libssl-dev", "libssl-dev"}},
     {"CycloneDDS", {"cyclonedds", "cyclonedds-dev"}},
     {"libmicrohttpd", {"libmicrohttpd-dev", "libmicrohttpd-dev"}},

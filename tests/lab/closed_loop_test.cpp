@@ -8,16 +8,16 @@
 #include <filesystem>
 
 #include "lab/controllers.hpp"
-#include "vehicle/scenario_file.hpp"
+#include "simulator/scenario_file.hpp"
 
 namespace kelpie::closed_loop_test {
 namespace {
 
 using namespace lab;
 
-vehicle::VehicleParameters dagon() {
-  return vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" /
-                                "small.toml")
+simulator::VehicleParameters dagon() {
+  return simulator::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" /
+                                  "small.toml")
       .vehicle;
 }
 
@@ -47,7 +47,7 @@ TEST(NominalModel, AllocatesWhatItsForcesAre) {
 
 // To millimetres with a feed-forward or adaptation, to a centimetre without.
 TEST(ClosedLoop, TheNominalVehicleFollowsUnderEveryController) {
-  const vehicle::VehicleParameters vehicle = dagon();
+  const simulator::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const Mission mission{.path = PathKind::figure_of_eight, .times = kShort};
   const double pid = fly(vehicle, mission, *make_pid(nominal, false)).before;
@@ -73,7 +73,7 @@ TEST(PredictiveControl, KeepsTheLimitsOfTheThrusters) {
 
 // A current turns by 90 degrees, which the model doesn't know: no offset is left.
 TEST(PredictiveControl, HoldsItsPlaceInACurrent) {
-  const vehicle::VehicleParameters vehicle = dagon();
+  const simulator::VehicleParameters vehicle = dagon();
   const std::unique_ptr<Controller> controller = make_predictive(NominalModel(vehicle));
   const MissionErrors flown =
       fly(vehicle, {.path = PathKind::station, .mishap = Mishap::current, .times = kShort},
@@ -84,7 +84,7 @@ TEST(PredictiveControl, HoldsItsPlaceInACurrent) {
 
 // A model that knows nothing leaves the vehicle to the nominal one.
 TEST(ClosedLoop, FallsBackWithoutAModel) {
-  const vehicle::VehicleParameters vehicle = dagon();
+  const simulator::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const Mission mission{
       .path = PathKind::lawn_mower,
@@ -99,7 +99,7 @@ TEST(ClosedLoop, FallsBackWithoutAModel) {
 
 // The nominal vehicle's own equation bridges twenty seconds without velocities and positions.
 TEST(ClosedLoop, AnOutageIsBridged) {
-  const vehicle::VehicleParameters vehicle = dagon();
+  const simulator::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const Mission mission{
       .path = PathKind::figure_of_eight, .mishap = Mishap::outage, .times = kShort};
@@ -117,7 +117,7 @@ const DynamicsModel& commissioned_model() {
 // Within the first minute no further away than without, since no jump of the commands comes with
 // the diagnosis; from then on less than half as far.
 TEST(ClosedLoop, ReallocationMakesUpForALostThruster) {
-  const vehicle::VehicleParameters vehicle = dagon();
+  const simulator::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const DynamicsModel& model = commissioned_model();
   for (const PathKind path : {PathKind::lawn_mower, PathKind::figure_of_eight}) {
@@ -133,7 +133,7 @@ TEST(ClosedLoop, ReallocationMakesUpForALostThruster) {
 // The current has set in four minutes before position and velocities fall silent for a minute: the
 // model learned meanwhile has taken the current for dynamics.
 TEST(ClosedLoop, KnowsTheCurrentThroughAnOutage) {
-  const vehicle::VehicleParameters vehicle = dagon();
+  const simulator::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const DynamicsModel& model = commissioned_model();
   for (const PathKind path : {PathKind::lawn_mower, PathKind::figure_of_eight}) {
@@ -145,7 +145,7 @@ TEST(ClosedLoop, KnowsTheCurrentThroughAnOutage) {
 
 // In a current the thrusters are whole: with a diagnosis the vehicle follows as well as without.
 TEST(ClosedLoop, ReallocationDoesNoHarmInACurrent) {
-  const vehicle::VehicleParameters vehicle = dagon();
+  const simulator::VehicleParameters vehicle = dagon();
   const NominalModel nominal(vehicle);
   const Mission mission{.path = PathKind::lawn_mower, .mishap = Mishap::current};
   const DynamicsModel& model = commissioned_model();

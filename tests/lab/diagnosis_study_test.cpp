@@ -8,14 +8,14 @@
 #include <set>
 #include <string>
 
-#include "vehicle/scenario_file.hpp"
+#include "simulator/scenario_file.hpp"
 
 namespace kelpie::diagnosis_study_test {
 namespace {
 
-vehicle::Scenario scenario() {
-  return vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) /
-                                "scenarios/diagnosis.toml");
+simulator::Scenario scenario() {
+  return simulator::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) /
+                                  "scenarios/diagnosis.toml");
 }
 
 lab::DiagnosisRun run_of(std::size_t index, const lab::DiagnosisCase& of) {
@@ -46,7 +46,7 @@ lab::DiagnosisStudy all_right() {
 }
 
 TEST(DiagnosisStudy, EveryCaseIsAVehicleThatCanBeDriven) {
-  vehicle::Scenario driven = scenario();
+  simulator::Scenario driven = scenario();
   std::set<std::string> names;
   for (const lab::DiagnosisCase& of : lab::diagnosis_cases(driven.vehicle)) {
     driven.configurations[1] = of.configuration;

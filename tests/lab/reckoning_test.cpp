@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/quantile.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::reckoning_test {
 namespace {
@@ -20,10 +20,10 @@ namespace {
 using namespace lab;
 
 log::Dataset simulated(double seconds) {
-  vehicle::Scenario scenario =
-      vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "small.toml");
+  simulator::Scenario scenario = simulator::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) /
+                                                          "scenarios" / "small.toml");
   scenario.phases.front().duration_s = seconds;
-  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
+  const log::Table table = study::log_table(simulator::simulate(scenario), "simulated");
   return log::make_dataset(table, log::guess_roles(table, {}));
 }
 

@@ -47,11 +47,11 @@ class ReproductionTest : public ::testing::Test {
   lab::ReproductionPlan plan_;
 };
 
-// Every number but the times, of the main stream or of all.
-std::vector<double> numbers_of(const lab::Reproduction& result, bool all) {
+// Every number of the main stream but the times.
+std::vector<double> numbers_of(const lab::Reproduction& result) {
   std::vector<double> numbers;
   for (const lab::StreamStudy& study : result.studies) {
-    if (!all && study.key != "simulation") {
+    if (study.key != "simulation") {
       continue;
     }
     for (const lab::ContenderRuns& runs : study.contenders) {
@@ -79,11 +79,8 @@ TEST_F(ReproductionTest, SameNumbersWithAnyNumberOfThreads) {
   plan_.threads = 1;
   const lab::Reproduction one = lab::reproduce(plan_);
   plan_.threads = 3;
-  const bool all = testing::thorough();
-  if (!all) {
-    plan_.further.clear();
-  }
-  EXPECT_EQ(numbers_of(one, all), numbers_of(lab::reproduce(plan_), all));
+  plan_.further.clear();
+  EXPECT_EQ(numbers_of(one), numbers_of(lab::reproduce(plan_)));
   ASSERT_EQ(one.studies.size(), 4U);  // random and blocks of both; no real log was given
   EXPECT_FALSE(one.real_log);
   EXPECT_TRUE(one.published.empty());

@@ -15,17 +15,10 @@ def solver(name):
     return {"name": name, "update_us": [50.0, 60.0, None, 55.0]}
 
 
-GROWTH = {"axis": "udot", "sizes": [225, 450], "path_us": [10.0, None], "smo_us": [40.0, 160.0]}
 RUN = {"case": "thruster th1", "kind": "thruster", "effect": 20, "special": False, "seed": 1,
        "said": "thruster th1", "right": True, "same_place": True,
        "named_after_s": 12.0, "truth": 0.8, "size": 0.79}
 FILES = {
-    "bench": {"format": "kelpie-bench", "over_window": [GROWTH], "over_inputs": [GROWTH],
-              "axes": [{"stream": "a/log.csv", "simulated": True, "axis": "udot", "epsilon": 0.1,
-                        "solvers": [solver(name) for name in ("path", "path, float", "SMO")],
-                        "libsvm_us": [], "path_whole": solver("path"),
-                        "learner": {"update_us": [100.0], "predict_us": [9.0]}}],
-              "model": {"thread_us": [450.0, 500.0], "wall_us": [460.0, 900.0]}},
     "control": {"format": "kelpie-control", "first_seed": 1, "settle_s": 1.0, "before_s": 1.0,
                 "cases": [{"path": "circle", "mishap": "none", "controllers": [
                     {"name": "PID", "time_s": [0.0, 1.0, 2.0], "error_m": [0.1, 0.2, None]}]}]},

@@ -11,8 +11,8 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
-#include "kelpie/learner/regressor.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "kelpie/svr/regressor.hpp"
 
 namespace kelpie {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 
 namespace kelpie {
 

@@ -11,7 +11,7 @@
 
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/core/setting.hpp"
-#include "kelpie/learner/settings.hpp"
+#include "kelpie/svr/settings.hpp"
 
 namespace kelpie {
 

@@ -4,15 +4,17 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 
 namespace kelpie {
 
+struct Snapshot;
 class TermSet;
 
 /// A DynamicsModel that one thread teaches while any other threads predict, such as a controller at
@@ -72,12 +74,13 @@ class SharedModel {
 
  private:
   struct Publication;
-  struct Service;
 
   /// Calls use(axes) with the snapshots of the latest publication, held; returns its number.
   template <typename Use>
   std::int64_t with_latest(Use use) const;
   void publish();
+  /// The snapshots of publication `place`.
+  std::span<const Snapshot> snapshots(std::size_t place) const;
 
   DynamicsModel model_;
   std::unique_ptr<const TermSet> terms_;  ///< of all axes; those of model_ go with replaced axes
@@ -86,7 +89,8 @@ class SharedModel {
   std::size_t count_;
   std::unique_ptr<Publication[]> publications_;  // NOLINT(*-avoid-c-arrays): not movable
   std::atomic<std::ptrdiff_t> latest_{-1};
-  std::unique_ptr<Service> service_;  ///< null: no block
+  /// Writes snapshots into a block (src/library/files/model_block.cpp); empty: no block.
+  std::function<void(std::span<const Snapshot> axes)> renew_block_;
 };
 
 }  // namespace kelpie

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kelpie/learner/past_model_info.hpp"
+#include "kelpie/svr/past_model_info.hpp"
 
 namespace kelpie {
 

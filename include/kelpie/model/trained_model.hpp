@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "kelpie/svr/regressor.hpp"
 
 namespace kelpie {
 

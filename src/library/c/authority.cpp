@@ -7,7 +7,7 @@
 #include "c/guarded.hpp"
 #include "c/handle.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 
 struct kelpie_authority {
   kelpie::Authority authority;

@@ -12,7 +12,7 @@
 #include "c/guarded.hpp"
 #include "c/handle.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 
 namespace kelpie {
 namespace {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/normal_equations.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
+
+#include "core/decomposition.hpp"
 
 namespace kelpie {
 
@@ -107,17 +108,16 @@ void NormalEquations::solve(double ridge, std::span<double> scratch,
   auto inside = columns_of(scratch.first(a_.size()), terms_);
   inside = gram();
   add_relative_ridge(inside, ridge);
-  Eigen::Ref<Eigen::MatrixXd> in_place(inside);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(in_place);
+  factorise_in_place(inside);
   auto solution = columns_of(theta, terms_);
   solution = moments();
-  factor.solveInPlace(solution);
+  solve_in_place(inside, solution);
 }
 
 Eigen::MatrixXd NormalEquations::solve(const Eigen::VectorXd& prior) const {
   Eigen::MatrixXd system = gram();
   system.diagonal() += prior;
-  return system.ldlt().solve(moments());
+  return solve_symmetric(system, Eigen::MatrixXd(moments()));
 }
 
 Eigen::ArrayXd NormalEquations::squared_errors(const Eigen::MatrixXd& theta) const {
@@ -151,7 +151,7 @@ Eigen::MatrixXd equilibrated_inverse(const Eigen::MatrixXd& gram) {
     }
   }
   const Eigen::MatrixXd inverse =
-      scaled.ldlt().solve(Eigen::MatrixXd::Identity(gram.rows(), gram.rows()));
+      solve_symmetric(scaled, Eigen::MatrixXd(Eigen::MatrixXd::Identity(gram.rows(), gram.rows())));
   return size.asDiagonal() * inverse * size.asDiagonal();
 }
 

@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/learner/online_svr.hpp"
+#include "kelpie/svr/online_svr.hpp"
 #include "kelpie/svr/resources.hpp"
 #include "learner/change_detector.hpp"
 #include "learner/past_models.hpp"
-#include "learner/robust_scale.hpp"
-#include "learner/sample_collector.hpp"
 #include "learner/term_change.hpp"
+#include "svr/robust_scale.hpp"
+#include "svr/sample_collector.hpp"
 #include "svr/svr_function.hpp"
 
 namespace kelpie {

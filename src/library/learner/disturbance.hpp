@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "kelpie/core/archive.hpp"
-#include "learner/robust_scale.hpp"
+#include "svr/robust_scale.hpp"
 
 namespace kelpie {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "learner/past_model.hpp"
+#include "svr/past_model.hpp"
 
 namespace kelpie {
 

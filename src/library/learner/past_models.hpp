@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/learner/online_svr.hpp"
+#include "kelpie/svr/online_svr.hpp"
 #include "learner/error_alarm.hpp"
 #include "learner/model_trial.hpp"
-#include "learner/past_model.hpp"
 #include "learner/term_change.hpp"
 #include "learner/tuning.hpp"
+#include "svr/past_model.hpp"
 
 namespace kelpie {
 

@@ -8,7 +8,7 @@
 
 #include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
-#include "learner/sample_collector.hpp"
+#include "svr/sample_collector.hpp"
 
 namespace kelpie {
 

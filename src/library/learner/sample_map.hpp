@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "kelpie/learner/online_svr.hpp"
+#include "kelpie/svr/online_svr.hpp"
 
 namespace kelpie {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "learner/error_correlation.hpp"
-#include "learner/robust_scale.hpp"
 #include "learner/triangular_fit.hpp"
 #include "learner/tuning.hpp"
 #include "svr/mixed_kernel.hpp"
+#include "svr/robust_scale.hpp"
 #include "svr/svr_function.hpp"
 
 namespace kelpie {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/learner/online_svr.hpp"
+#include "kelpie/svr/online_svr.hpp"
 
 namespace kelpie {
 

@@ -45,8 +45,6 @@ struct OnlineTuning {
     std::int64_t trial_length = 200;  ///< samples of a trial
     std::int64_t same_after = 1024;   ///< age of a grown model that equals a past model [samples]
     double least_error = 1e-9;        ///< usual error of a noiseless stream [standard deviations]
-    std::size_t compared = 64;        ///< samples by which two models are compared: by hand
-    double alike = 1.5;               ///< error ratio of two models of one vehicle: by hand
     double same_place = 0.99;         ///< κ_SE of two samples at one place: by hand
   } memory;
 
@@ -135,17 +133,6 @@ struct OnlineTuning {
     double stretch = 500.0;       ///< samples over which the best expert may change (section 3)
     std::size_t min_errors = 30;  ///< errors before an interval: by hand
   } interval;
-
-  /// OnlineSvr.
-  struct Paper {
-    double most_self = 1e6;  ///< largest κ(x, x): above it rounding hides the other kernel parts
-    int most_waiting = 8;    ///< samples of an unfinished update, the largest age of the model
-    std::size_t slice_of_rows = 25'000;  ///< kernel elements per slice: by the time of an update
-    std::size_t element_work = 30;       ///< of a kernel element [numbers], measured/performance.md
-    std::size_t outlier_least = 64;      ///< errors before s is known: by hand
-    std::size_t outlier_every = 8;       ///< errors between two medians: by hand
-    std::size_t quartiles_least = 4;     ///< support vectors of `iqr`
-  } paper;
 
   /// RecursiveLeastSquares: by hand.
   struct LeastSquares {

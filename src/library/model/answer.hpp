@@ -8,7 +8,7 @@
 #include <span>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 
 namespace kelpie {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
 #include "kelpie/model/online_model.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "model/update_state.hpp"
 
 namespace kelpie {

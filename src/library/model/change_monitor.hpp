@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "learner/error_correlation.hpp"
 #include "learner/triangular_fit.hpp"
 #include "model/change_start.hpp"

@@ -15,7 +15,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/stored_past_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "model/answer.hpp"
 #include "model/change_monitor.hpp"
 #include "model/first_moves.hpp"

@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include "kelpie/core/archive.hpp"
-#include "learner/robust_scale.hpp"
 #include "model/tuning.hpp"
+#include "svr/robust_scale.hpp"
 
 namespace kelpie {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "kelpie/motion/term_set.hpp"
-#include "learner/robust_scale.hpp"
 #include "learner/triangular_fit.hpp"
 #include "model/tuning.hpp"
+#include "svr/robust_scale.hpp"
 
 namespace kelpie {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/learner/decision.hpp"
+#include "kelpie/svr/decision.hpp"
 
 namespace kelpie {
 

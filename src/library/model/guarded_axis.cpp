@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "learner/valid_sample.hpp"
 #include "model/tuning.hpp"
+#include "svr/valid_sample.hpp"
 
 namespace kelpie {
 namespace {

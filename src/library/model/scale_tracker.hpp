@@ -10,9 +10,9 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/model/settings.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "learner/sample_collector.hpp"
 #include "model/command_gain.hpp"
 #include "model/warm_up.hpp"
+#include "svr/sample_collector.hpp"
 
 namespace kelpie {
 

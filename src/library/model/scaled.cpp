@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "learner/valid_sample.hpp"
 #include "model/tuning.hpp"
+#include "svr/valid_sample.hpp"
 
 namespace kelpie {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "model/scale_tracker.hpp"
 #include "model/thinned_rows.hpp"
 #include "model/warm_up.hpp"

@@ -7,7 +7,6 @@
 #include "kelpie/core/error.hpp"
 #include "model/answer.hpp"
 #include "model/dynamics_axis.hpp"
-#include "model/model_block.hpp"
 #include "model/snapshot.hpp"
 
 namespace kelpie {
@@ -26,13 +25,6 @@ struct SharedModel::Publication {
   std::vector<Snapshot> axes;
   std::int64_t number = 0;
   mutable std::atomic<int> readers{0};
-};
-
-/// A block with what the snapshots do not tell.
-struct SharedModel::Service {
-  ModelBlock block;
-  std::vector<std::string> inputs;
-  Alignment alignment;
 };
 
 SharedModel::SharedModel(DynamicsModel model, std::size_t snapshots)
@@ -68,23 +60,8 @@ void SharedModel::learn_held_back() {
   }
 }
 
-void SharedModel::serve(std::span<std::byte> block, std::span<const std::string> inputs,
-                        std::span<const std::string> targets, const Alignment& alignment) {
-  service_.reset();
-  if (block.empty()) {
-    return;
-  }
-  require_size("inputs", inputs.size(), model_.inputs());
-  require_size("targets", targets.size(), model_.axes());
-  const std::vector<Snapshot>& axes = publications_[0].axes;
-  const BlockLayout needed =
-      BlockLayout::of(inputs, targets, *terms_, axes, ModelBlock::assesses(block));
-  service_ = std::make_unique<Service>(
-      Service{ModelBlock(block, needed), {inputs.begin(), inputs.end()}, alignment});
-  if (const std::ptrdiff_t latest = latest_.load(); latest >= 0) {
-    service_->block.publish(service_->inputs, publications_[static_cast<std::size_t>(latest)].axes,
-                            alignment);
-  }
+std::span<const Snapshot> SharedModel::snapshots(std::size_t place) const {
+  return publications_[place].axes;
 }
 
 // A publication that is neither the latest nor held by a reader may be written: a reader that takes
@@ -100,8 +77,8 @@ void SharedModel::publish() {
       }
       publication.number = ++published_;
       latest_.store(place);
-      if (service_) {
-        service_->block.publish(service_->inputs, publication.axes, service_->alignment);
+      if (renew_block_) {
+        renew_block_(publication.axes);
       }
       return;
     }

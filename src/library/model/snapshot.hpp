@@ -7,11 +7,11 @@
 #include <string>
 
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/learner/regressor.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "learner/density.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "learner/disturbance.hpp"
 #include "model/steady_part.hpp"
+#include "svr/density.hpp"
 #include "svr/function_mix.hpp"
 #include "svr/squared_exponential.hpp"
 

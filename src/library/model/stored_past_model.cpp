@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include "kelpie/core/scaling.hpp"
-#include "kelpie/learner/online_svr.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "learner/past_model.hpp"
-#include "learner/sample_collector.hpp"
+#include "kelpie/svr/online_svr.hpp"
+#include "svr/past_model.hpp"
+#include "svr/sample_collector.hpp"
 
 namespace kelpie {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
-#include "kelpie/learner/decision.hpp"
+#include "kelpie/svr/decision.hpp"
 #include "model/access_guard.hpp"
 
 namespace kelpie {

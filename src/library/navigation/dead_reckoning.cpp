@@ -39,31 +39,32 @@ struct Estimate {
   Velocities deviation{};
 };
 
-// One belief about the water, its filter and what it learned in practice.
-struct Hypothesis {
-  VelocityFilter filter;
-  Practice practice;
-
-  Hypothesis(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s,
-             double wander)
-      : filter(model, with(settings, current_m_s, wander)), practice(filter, settings.practice_s) {}
-
-  void use(const OpenLoop& model) {
-    filter.use(model);
-    practice.use(model);
-  }
-
-  static DeadReckoningSettings with(DeadReckoningSettings settings, double current_m_s,
-                                    double wander) {
-    settings.current_m_s = current_m_s;
-    settings.current_wander = wander;
-    return settings;
-  }
-};
-
 }  // namespace
 
 struct DeadReckoning::State {
+  /// One belief about the water, its filter and what it learned in practice.
+  struct Hypothesis {
+    VelocityFilter filter;
+    Practice practice;
+
+    Hypothesis(const OpenLoop& model, const DeadReckoningSettings& settings, double current_m_s,
+               double wander)
+        : filter(model, with(settings, current_m_s, wander)),
+          practice(filter, settings.practice_s) {}
+
+    void use(const OpenLoop& model) {
+      filter.use(model);
+      practice.use(model);
+    }
+
+    static DeadReckoningSettings with(DeadReckoningSettings settings, double current_m_s,
+                                      double wander) {
+      settings.current_m_s = current_m_s;
+      settings.current_wander = wander;
+      return settings;
+    }
+  };
+
   /// Without a current, with a constant, a wandering current; a wandering current and a kept model.
   std::vector<Hypothesis> hypotheses;
   bool keeps_model = false;  ///< the last hypothesis, until a later model is clearly better

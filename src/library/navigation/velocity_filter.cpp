@@ -15,6 +15,11 @@ namespace {
 
 constexpr const auto& kFilter = kNavigationTuning.filter;
 
+// A B, compiled once: the compiler expands a product of such matrices wherever one is written.
+VelocityFilter::Matrix product(const VelocityFilter::Matrix& a, const VelocityFilter::Matrix& b) {
+  return a * b;
+}
+
 }  // namespace
 
 VelocityFilter::VelocityFilter(const OpenLoop& model, const DeadReckoningSettings& settings)
@@ -131,8 +136,9 @@ double VelocityFilter::correct(std::span<const Eigen::Index> which, const Vector
     gain.middleRows(current(), 2).setZero();  // a cut or a wild ping tells nothing of the water
   }
   mean_ += gain * missing;
-  const Matrix told = gain * cross.transpose();
-  covariance_ += gain * (doubt * expected) * gain.transpose() - told - told.transpose();
+  const Matrix told = product(gain, cross.transpose());
+  covariance_ +=
+      product(doubt * product(gain, expected), gain.transpose()) - told - told.transpose();
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index state = which[static_cast<std::size_t>(i)];
@@ -328,13 +334,13 @@ void VelocityFilter::step(double from, double to, double step_s, double factor) 
   const double middle = 0.5 * (from + to);
   const Matrix by_state = step_s * slope(mean_, from);
   const Matrix onward =
-      Matrix::Identity(mean_.size(), mean_.size()) + by_state + 0.5 * by_state * by_state;
+      Matrix::Identity(mean_.size(), mean_.size()) + by_state + 0.5 * product(by_state, by_state);
   const Vector k1 = rate(mean_, from);
   const Vector k2 = rate(mean_ + 0.5 * step_s * k1, middle);
   const Vector k3 = rate(mean_ + 0.5 * step_s * k2, middle);
   const Vector k4 = rate(mean_ + step_s * k3, to);
   mean_ += step_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-  covariance_ = (onward * covariance_ * onward.transpose()).eval();
+  covariance_ = product(product(onward, covariance_), onward.transpose());
   add_noise(step_s, factor);
   keep_in_range();
 }

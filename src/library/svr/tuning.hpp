@@ -6,8 +6,9 @@
 
 namespace kelpie {
 
-/// The behavioural constants of the solvers of the dual problem: chosen by hand, without a recorded
-/// measurement, where no source is named. Work is counted in visited numbers.
+/// The behavioural constants of the paper's learner and of the solvers of its dual problem: chosen
+/// by hand, without a recorded measurement, where no source is named. Work is counted in visited
+/// numbers.
 struct SvrTuning {
   /// PathSolver.
   std::size_t renewed_residuals = 4;  ///< computed afresh in every solve
@@ -35,6 +36,19 @@ struct SvrTuning {
   /// FreeSet, SmoSolver.
   double least_pivot = 1e-12;    ///< of a squared pivot, relative to K_ii
   double maybe_rounding = 1e-9;  ///< KKT gap below which rounding is considered
+
+  /// OnlineSvr and its nodes.
+  double most_self = 1e6;  ///< largest κ(x, x): above it rounding hides the other kernel parts
+  int most_waiting = 8;    ///< samples of an unfinished update, the largest age of the model
+  std::size_t slice_of_rows = 25'000;  ///< kernel elements per slice: by the time of an update
+  std::size_t element_work = 30;       ///< of a kernel element [numbers], measured/performance.md
+  std::size_t outlier_least = 64;      ///< errors before s is known: by hand
+  std::size_t outlier_every = 8;       ///< errors between two medians: by hand
+  std::size_t quartiles_least = 4;     ///< support vectors of `iqr`
+
+  /// PastModel.
+  std::size_t compared = 64;  ///< samples by which two models are compared
+  double alike = 1.5;         ///< error ratio of two models of one vehicle
 };
 
 inline constexpr SvrTuning kSvr{};

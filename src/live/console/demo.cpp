@@ -6,27 +6,27 @@
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/read_log.hpp"
+#include "simulator/dagon.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
-#include "vehicle/dagon.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::cli {
 namespace {
 
 constexpr double kDamaged = 0.6;  // share of the thrust of th2
 
-vehicle::Scenario demo_scenario(double duration_s) {
-  vehicle::Scenario scenario;
+simulator::Scenario demo_scenario(double duration_s) {
+  simulator::Scenario scenario;
   scenario.vehicle =
-      vehicle::read_vehicle(file::TomlNode::parse(std::string(vehicle::kDagon), "dagon.toml"));
+      simulator::read_vehicle(file::TomlNode::parse(std::string(simulator::kDagon), "dagon.toml"));
   scenario.rate_hz = 10.0;
-  scenario.noise = vehicle::noise_preset("as_recorded");
-  vehicle::Configuration nominal;
+  scenario.noise = simulator::noise_preset("as_recorded");
+  simulator::Configuration nominal;
   nominal.name = "nominal";
-  vehicle::Configuration damaged;
+  simulator::Configuration damaged;
   damaged.name = "damaged";
-  damaged.effectiveness(vehicle::kSurgeRight) = kDamaged;
+  damaged.effectiveness(simulator::kSurgeRight) = kDamaged;
   scenario.configurations = {nominal, damaged};
   scenario.phases = {{.configuration = 0, .duration_s = duration_s / 2.0},
                      {.configuration = 1, .duration_s = duration_s / 2.0}};
@@ -39,7 +39,7 @@ log::Dataset demo_rows(double duration_s) {
   const std::string source = "the simulated vehicle";
   try {
     const log::Log log{
-        .table = study::log_table(vehicle::simulate(demo_scenario(duration_s)), source),
+        .table = study::log_table(simulator::simulate(demo_scenario(duration_s)), source),
         .roles = {.units = {{"u", "m/s"},
                             {"v", "m/s"},
                             {"r", "rad/s"},

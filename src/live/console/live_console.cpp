@@ -19,7 +19,7 @@ namespace kelpie::cli {
 
 LiveConsole::LiveConsole(double status_s)
     : every_(status_s),
-      terminal_(isatty(STDERR_FILENO) == 1),
+      terminal_(isatty(::fileno(streams().err)) == 1),
       shown_(std::chrono::steady_clock::now()),
       writer_([this] { write(); }) {}
 
@@ -31,7 +31,7 @@ LiveConsole::~LiveConsole() {
   added_.notify_one();
   writer_.join();
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K");
+    fmt::print(streams().err, "\r\033[K");
   }
 }
 
@@ -68,8 +68,8 @@ void LiveConsole::write() {
 
 void LiveConsole::write(const Line& line) const {
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", line.is_event ? "" : line.text);
-    static_cast<void>(std::fflush(stderr));
+    fmt::print(streams().err, "\r\033[K{}", line.is_event ? "" : line.text);
+    static_cast<void>(std::fflush(streams().err));
   }
   if (line.is_event) {
     warn("kelpie: {}\n", line.text);

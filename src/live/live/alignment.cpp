@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "kelpie/alignment/alignment.hpp"
+#include "kelpie/alignment/live_alignment.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/model/alignment.hpp"
-#include "kelpie/model/live_alignment.hpp"
 #include "live/checkpoint.hpp"
 #include "live/tuning.hpp"
 #include "study/alignment.hpp"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "live/configuration.hpp"
 #include "log/read_log.hpp"
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "kelpie/model/alignment.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/motion/unit.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "live/configuration.hpp"
 #include "live/health.hpp"
 #include "live/output.hpp"

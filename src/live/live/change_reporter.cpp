@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "live/health_table.hpp"
 
 namespace kelpie::live {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/stream/stream_plan.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "live/output.hpp"
 
 namespace kelpie::live {

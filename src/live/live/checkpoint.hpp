@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/core/archive.hpp"
-#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "live/configuration.hpp"
 #include "live/transport.hpp"

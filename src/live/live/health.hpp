@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
-#include "kelpie/model/alignment.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/stream/signal_history.hpp"
+#include "kelpie/svr/regressor.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "live/transport.hpp"
 
 namespace kelpie::live {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "file/mapped_file.hpp"
-#include "kelpie/model/live_alignment.hpp"
+#include "kelpie/alignment/live_alignment.hpp"
 #include "kelpie/model/shared_model.hpp"
 #include "live/authority_reporter.hpp"
 #include "live/change_reporter.hpp"

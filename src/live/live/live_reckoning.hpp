@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/navigation/dead_reckoning.hpp"
 #include "live/configuration.hpp"
 #include "live/heading_reader.hpp"

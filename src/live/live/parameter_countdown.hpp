@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/motion/planar_fit.hpp"
+#include "kelpie/identify/planar_fit.hpp"
 #include "live/configuration.hpp"
 #include "live/health.hpp"
 #include "live/output.hpp"

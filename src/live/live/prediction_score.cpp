@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/quantile.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "live/tuning.hpp"
 #include "study/baselines.hpp"
 #include "study/diagnosis.hpp"

@@ -22,7 +22,11 @@ struct ChildLimits {
 
 /// Work in a forked child process with bounded memory and time, for libraries that crash on damaged
 /// files. The child writes bytes to a pipe, the parent reads the bytes. The child ends when `work`
-/// returns, at a limit, and with the parent; the destructor ends the child.
+/// returns, at a limit, and with the parent; the destructor ends the child. Parents may have
+/// further threads (Python, for instance): of these the child has none. Memory can be allocated in
+/// the child, since glibc's fork() takes the locks of malloc; `work` must not use objects that
+/// further threads of the parent use, for a lock taken at the fork is never released in the child.
+/// A child that waits for such a lock ends at its limit of time.
 class ChildProcess {
  public:
   /// Writes all bytes to the parent. Throws Failure when the parent is gone.

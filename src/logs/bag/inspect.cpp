@@ -178,6 +178,7 @@ BagReport inspect_bag(MessageReader& bag, const MessageDefinitions& definitions)
   report.losses = bag.losses();
   report.loss_count = bag.loss_count();
   report.passed_over = bag.passed_over();
+  report.left_out = bag.left_out();
   return report;
 }
 

@@ -73,6 +73,7 @@ struct BagReport {
   std::vector<std::string> losses;  ///< the first losses of a recovered bag
   std::size_t loss_count = 0;
   std::map<std::string, std::size_t> passed_over;  ///< MessageReader::passed_over()
+  std::vector<std::string> left_out;               ///< MessageReader::left_out()
   AutopilotReport autopilot;
 };
 

@@ -4,6 +4,7 @@
 #ifdef KELPIE_WITH_MATIO
 #include <fmt/format.h>
 #include <matio.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -15,8 +16,8 @@
 #include <string_view>
 #include <utility>
 
+#include "bag/byte_reader.hpp"
 #include "bag/child_process.hpp"
-#include "bag/mat_elements.hpp"
 #include "bag/tuning.hpp"
 #include "file/content.hpp"
 #include "file/mapped_file.hpp"
@@ -83,6 +84,11 @@ bool is_real(const matvar_t* variable) {
          variable->isComplex == 0;
 }
 
+bool is_object(const matvar_t& variable) {
+  return variable.class_type == MAT_C_OBJECT || variable.class_type == MAT_C_FUNCTION ||
+         variable.class_type == MAT_C_OPAQUE;
+}
+
 bool is_real_scalar(const matvar_t* variable) {
   return is_real(variable) && count_of(*variable) == 1;
 }
@@ -137,15 +143,26 @@ std::string path_of(matvar_t* variable, std::size_t k, std::size_t count, const 
   return fmt::format("{}{}.{}", path, count > 1 ? fmt::format("_{}", k + 1) : "", field);
 }
 
-using TakeArray = std::function<void(const MatArray&)>;
+// Receives what is in a file.
+struct MatNews {
+  std::function<void(const MatArray&)> take;
+  LoseDamage lose;
+  LeaveOut leave_out;
+};
 
 // Takes variables of libmatio apart into arrays of real numbers.
 class MatCollector {
  public:
-  MatCollector(const std::filesystem::path& file, const TakeArray& take, const LoseDamage& lose)
-      : file_(file), take_(take), lose_(lose) {}
+  MatCollector(const std::filesystem::path& file, const MatNews& news) : file_(file), news_(news) {}
 
-  void add(matvar_t* variable, const std::string& path, std::size_t depth = 0) {
+  // `most`: numbers that the variable's bytes can hold.
+  void add_variable(matvar_t* variable, const std::string& path, std::size_t most) {
+    left_ = most;
+    add(variable, path, 0);
+  }
+
+ private:
+  void add(matvar_t* variable, const std::string& path, std::size_t depth) {
     if (variable == nullptr || count_ >= kTuning.most_arrays) {
       return;
     }
@@ -154,7 +171,11 @@ class MatCollector {
                        "has structs within structs more than 16 deep");
     }
     const auto count = count_of(*variable);
-    if (!count) {
+    if (variable->class_type == MAT_C_EMPTY) {
+      news_.leave_out(path + " was never filled");
+    } else if (is_object(*variable)) {
+      news_.leave_out(path + " is an object of MATLAB; save the content as a struct or array");
+    } else if (!count) {
       lose(path, "is damaged: impossible size");
     } else if (variable->class_type == MAT_C_STRUCT && variable->data != nullptr) {
       add_structs(variable, *count, path, depth);
@@ -168,19 +189,19 @@ class MatCollector {
     }
   }
 
- private:
   void hand_on(const MatArray& array) {
     ++count_;
-    take_(array);
+    news_.take(array);
   }
 
   void add_numbers(const matvar_t& variable, std::size_t count, const std::string& path) {
     const std::size_t bytes = Mat_SizeOfClass(variable.class_type);
     if (variable.data == nullptr || static_cast<std::size_t>(variable.data_size) != bytes ||
-        variable.nbytes / bytes < count) {
+        variable.nbytes / bytes < count || count > left_) {
       lose(path, fmt::format("is damaged: {} numbers are missing", count));
       return;
     }
+    left_ -= count;
     const std::size_t last = variable.dims[variable.rank - 1];  // NOLINT: C
     hand_on({.path = path,
              .rows = count / last,
@@ -215,13 +236,13 @@ class MatCollector {
   }
 
   void lose(const std::string& path, const std::string& message) const {
-    lose_(InputError({.file = file_.string(), .field = path}, message));
+    news_.lose(InputError({.file = file_.string(), .field = path}, message));
   }
 
   const std::filesystem::path& file_;
-  const TakeArray& take_;
-  const LoseDamage& lose_;
+  const MatNews& news_;
   std::size_t count_ = 0;
+  std::size_t left_ = 0;  // of the variable's numbers
 };
 
 using MatVariable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
@@ -237,9 +258,102 @@ void hear(int /*level*/, char* message) {  // NOLINT(readability-non-const-param
   heard() = text.substr(0, text.find('\n'));
 }
 
+// A variable's element of version 5, unpacked: its size, and its first bytes (tag, flags, name and
+// further).
+struct MatElement {
+  std::size_t size = 0;
+  std::vector<std::byte> head{};
+};
+
+constexpr std::size_t kMatHead = 128;  // bytes of the file before the first variable
+constexpr std::size_t kTag = 8;
+constexpr std::size_t kHeadBytes = 512;  // bytes that hold name and class of an object
+
+// Unpacks all for zlib's checksum; nothing where the content is damaged.
+std::optional<MatElement> unpacked(std::span<const std::byte> packed) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) {
+    return std::nullopt;
+  }
+  MatElement element;
+  std::array<std::byte, 65'536> block;  // NOLINT: filled by zlib
+  // NOLINTBEGIN: C
+  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
+  stream.avail_in = static_cast<uInt>(packed.size());
+  int state = Z_OK;
+  while (state == Z_OK) {
+    stream.next_out = reinterpret_cast<Bytef*>(block.data());
+    stream.avail_out = static_cast<uInt>(block.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+    const std::size_t bytes = block.size() - stream.avail_out;
+    if (element.size == 0) {
+      element.head.assign(block.begin(), block.begin() + std::min(kHeadBytes, bytes));
+    }
+    element.size += bytes;
+  }
+  // NOLINTEND
+  inflateEnd(&stream);
+  return state == Z_STREAM_END ? std::optional(std::move(element)) : std::nullopt;
+}
+
+// The variables of a file of version 5 that are whole, by their outermost elements, because
+// libmatio fills with zeros where a file is cut off. Tells the first variable that is not whole.
+std::vector<MatElement> whole_variables(std::span<const std::byte> bytes, std::endian order,
+                                        const std::filesystem::path& file, const LoseDamage& lose) {
+  std::vector<MatElement> whole;
+  std::size_t at = kMatHead;
+  while (at < bytes.size()) {
+    const std::span<const std::byte> left = bytes.subspan(at);
+    const bool has_tag = left.size() >= kTag;
+    const auto kind = has_tag ? number_at<std::uint32_t>(left, order) : 0;
+    const std::size_t size = has_tag ? number_at<std::uint32_t>(left.subspan(4), order) : 0;
+    std::optional<MatElement> element;
+    if (has_tag && size <= left.size() - kTag) {
+      if (kind == MAT_T_COMPRESSED) {
+        element = unpacked(left.subspan(kTag, size));
+      } else if (kind == MAT_T_MATRIX) {
+        const std::span<const std::byte> head = left.first(std::min(kHeadBytes, kTag + size));
+        element = MatElement{.size = size, .head = {head.begin(), head.end()}};
+      }
+    }
+    if (!element) {
+      lose(InputError({.file = file.string(), .field = fmt::format("offset {}", at)},
+                      "is cut off or damaged: the variable that begins here is not whole"));
+      break;
+    }
+    whole.push_back(*std::move(element));
+    at += kTag + size;
+  }
+  return whole;
+}
+
+// "vehicle is an object of class string; …". libmatio reads neither name nor class of an object:
+// both stand behind tag and flags, with the name of the type system between.
+std::string object_text(std::span<const std::byte> head, std::endian order) {
+  std::array<std::string, 3> texts{"a variable", "", ""};
+  std::size_t at = 3 * kTag;
+  for (std::string& text : texts) {
+    if (head.size() < at + kTag) {
+      break;
+    }
+    const auto first = number_at<std::uint32_t>(head.subspan(at), order);
+    const bool is_small = first >> 16U != 0;  // the text stands within the tag
+    const std::size_t size =
+        is_small ? first >> 16U : number_at<std::uint32_t>(head.subspan(at + 4), order);
+    const std::size_t begin = at + (is_small ? 4 : kTag);
+    if (size > head.size() - begin) {
+      break;
+    }
+    const auto* const letters = reinterpret_cast<const char*>(head.data());  // NOLINT: bytes
+    text = mat_identifier(std::string_view(letters, head.size()).substr(begin, size));
+    at = (begin + size + kTag - 1) / kTag * kTag;
+  }
+  return fmt::format("{} is an object{}; save the content as a struct or array", texts[0],
+                     texts[2].empty() ? " of MATLAB" : " of class " + texts[2]);
+}
+
 // Reads a file with libmatio, in the process that calls.
-void read_with_matio(const std::filesystem::path& file, const TakeArray& take,
-                     const LoseDamage& lose) {
+void read_with_matio(const std::filesystem::path& file, const MatNews& news) {
   Mat_LogInitFunc("kelpie", hear);
   heard().clear();
   const std::unique_ptr<mat_t, decltype(&Mat_Close)> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY),
@@ -248,29 +362,37 @@ void read_with_matio(const std::filesystem::path& file, const TakeArray& take,
     throw InputError({.file = file.string()}, "is no MATLAB file that can be read: " + heard());
   }
   const bool is_version_5 = Mat_GetVersion(mat.get()) == MAT_FT_MAT5;
-  const std::size_t due =
-      is_version_5 ? sound_mat_variables(file::MappedFile(file).bytes(), file.string(), lose) : 0;
-  MatCollector collector(file, take, lose);
+  const file::MappedFile content(file);
+  const std::endian order =
+      content.bytes()[kMatHead - 2] == std::byte{'I'} ? std::endian::little : std::endian::big;
+  const std::vector<MatElement> whole =
+      is_version_5 ? whole_variables(content.bytes(), order, file, news.lose)
+                   : std::vector<MatElement>();
+  MatCollector collector(file, news);
   std::size_t read = 0;
-  while (read < due || !is_version_5) {
+  for (; read < whole.size() || !is_version_5; ++read) {
     const MatVariable variable(Mat_VarReadNext(mat.get()), &Mat_VarFree);
-    if (variable == nullptr) {
+    if (variable == nullptr || (is_version_5 && !heard().empty())) {
       break;
     }
-    ++read;
-    if (variable->name != nullptr) {
-      collector.add(variable.get(), mat_identifier(variable->name));
-    }
+    const std::string name = variable->name == nullptr ? "" : variable->name;
+    if (!name.empty()) {
+      collector.add_variable(variable.get(), mat_identifier(name),
+                             is_version_5 ? whole[read].size : kTuning.most_numbers);
+    } else if (variable->class_type == MAT_C_OPAQUE && is_version_5) {
+      news.leave_out(object_text(whole[read].head, order));
+    }  // else the content of all objects
   }
-  if (read < due || (!is_version_5 && !heard().empty())) {
-    lose(InputError(
+  if (read < whole.size() || (!is_version_5 && !heard().empty())) {
+    news.lose(InputError(
         {.file = file.string()},
         fmt::format("is damaged: its variable number {} can't be read: {}", read + 1, heard())));
   }
 }
 
-// What the child tells: an array, damage, an error that ends it, or the end of the file.
-enum class News : char { array = 'a', damage = 'd', error = 'e', end = 'z' };
+// What the child tells: an array, damage, what is left out, an error that ends the child, or the
+// end of the file.
+enum class News : char { array = 'a', damage = 'd', left_out = 'l', error = 'e', end = 'z' };
 
 // The child's side: news follow each other, each with a text; an array with its size and values.
 class NewsWriter {
@@ -347,8 +469,9 @@ void read_in_child(const std::filesystem::path& file, const ChildProcess::Write&
   const NewsWriter writer(write);
   try {
     read_with_matio(
-        file, [&](const MatArray& array) { writer.tell(array); },
-        [&](const InputError& damage) { writer.tell(News::damage, damage.what()); });
+        file, {.take = [&](const MatArray& array) { writer.tell(array); },
+               .lose = [&](const InputError& damage) { writer.tell(News::damage, damage.what()); },
+               .leave_out = [&](const std::string& what) { writer.tell(News::left_out, what); }});
     writer.tell(News::end, "");
   } catch (const InputError& error) {
     writer.tell(News::error, error.what());
@@ -357,7 +480,8 @@ void read_in_child(const std::filesystem::path& file, const ChildProcess::Write&
 
 }  // namespace
 
-std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const LoseDamage& lose) {
+std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const LoseDamage& lose,
+                                      const LeaveOut& leave_out) {
   const ChildLimits limits = limits_for(file);
   ChildProcess child([&](const auto& write) { read_in_child(file, write); }, limits);
   NewsReader reader(child, limits.bytes);
@@ -378,6 +502,8 @@ std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const L
       arrays.push_back(std::move(array));
     } else if (kind == News::damage) {
       lose(InputError(text));
+    } else if (kind == News::left_out) {
+      leave_out(text);
     } else if (kind == News::error) {
       throw InputError(text);
     }
@@ -394,8 +520,8 @@ std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const L
 
 #else
 
-std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file,
-                                      const LoseDamage& /*lose*/) {
+std::vector<MatArray> read_mat_arrays(const std::filesystem::path& file, const LoseDamage& /*lose*/,
+                                      const LeaveOut& /*leave_out*/) {
   throw InputError({.file = file.string()},
                    "is a file of MATLAB, and this kelpie is built without libmatio");
 }

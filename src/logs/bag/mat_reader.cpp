@@ -16,7 +16,9 @@ class MatReader final : public MessageReader {
  public:
   MatReader(const std::filesystem::path& file, ReadMode mode, const RowTimes& times)
       : MessageReader(mode, file.string()),
-        arrays_(read_mat_arrays(file, [this](const InputError& damage) { lose(damage); })),
+        arrays_(read_mat_arrays(
+            file, [this](const InputError& damage) { lose(damage); },
+            [this](const std::string& what) { leave_out(what); })),
         topics_(topics_of(times)),
         rows_(topics_.size(), 0) {
     for (const MatTopic& topic : topics_) {

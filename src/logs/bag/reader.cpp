@@ -48,6 +48,9 @@ std::string MessageReader::losses_text() const {
   if (loss_count_ > losses_.size()) {
     text += "lost: " + std::to_string(loss_count_ - losses_.size()) + " more\n";
   }
+  for (const std::string& what : left_out_) {
+    text += "left out: " + what + "\n";
+  }
   return text;
 }
 
@@ -59,6 +62,12 @@ void MessageReader::lose(const InputError& damage) {
     losses_.emplace_back(damage.what());
   }
   ++loss_count_;
+}
+
+void MessageReader::leave_out(const std::string& what) {
+  if (left_out_.size() < kShownLosses) {
+    left_out_.push_back(what);
+  }
 }
 
 void MessageReader::take_losses(MessageReader& other) {

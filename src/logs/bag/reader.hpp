@@ -83,7 +83,11 @@ class MessageReader {
   static constexpr std::size_t kShownLosses = 20;
   /// Numbers of messages with a wrong checksum that were passed over, by topic.
   const std::map<std::string, std::size_t>& passed_over() const { return passed_over_; }
-  /// For a terminal: a line for the messages passed over, and a line per loss; "" without either.
+  /// The first kShownLosses parts of the recording that are not read, with the reason: "vehicle is
+  /// an object of class string; …".
+  const std::vector<std::string>& left_out() const { return left_out_; }
+  /// For a terminal: a line for the messages passed over, and a line per loss and per part left
+  /// out; "" without these.
   std::string losses_text() const;
 
   /// Keeps `content` in memory as long as the reader.
@@ -103,6 +107,8 @@ class MessageReader {
   std::size_t add_topic(const Topic& topic, const std::string& file);
   /// Counts a message with a wrong checksum, of the topic called `topic`.
   void pass_over(const std::string& topic) { ++passed_over_[topic]; }
+  /// Notes a sound part of the recording that is not read.
+  void leave_out(const std::string& what);
   /// Takes over the losses of `other`.
   void take_losses(MessageReader& other);
   ReadMode mode() const { return mode_; }
@@ -115,6 +121,7 @@ class MessageReader {
   std::vector<std::string> losses_;
   std::size_t loss_count_ = 0;
   std::map<std::string, std::size_t> passed_over_;
+  std::vector<std::string> left_out_;
   std::shared_ptr<const void> content_;
 };
 

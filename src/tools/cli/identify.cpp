@@ -23,9 +23,9 @@
 #include "kelpie/core/error.hpp"
 #include "report/identification_report.hpp"
 #include "report/verdicts.hpp"
+#include "simulator/scenario_file.hpp"
 #include "study/alignment.hpp"
 #include "study/identification.hpp"
-#include "vehicle/scenario_file.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -35,7 +35,7 @@ constexpr const char* kPage = "identify.html";
 constexpr const char* kCertificate = "certificate.json";
 constexpr const char* kOwn = "kelpie";
 
-using Base = std::optional<vehicle::VehicleParameters>;
+using Base = std::optional<simulator::VehicleParameters>;
 
 // What is written for a simulator.
 struct EngineFile {
@@ -50,11 +50,8 @@ constexpr std::array kEngineFiles{
     EngineFile{"gazebo_plugin", "gazebo_plugin.sdf", format::gazebo_plugin_sdf},
     EngineFile{"uuv_simulator", "uuv_simulator.xacro", format::uuv_xacro},
     EngineFile{"stonefish", "stonefish.xml", format::stonefish_xml},
-    EngineFile{"blue", "blue.yaml", format::blue_yaml},
-    EngineFile{"orca4", "orca4.yaml", format::orca4_yaml},
     EngineFile{"mss", "mss.m", format::mss_m},
-    EngineFile{"python_vehicle_simulator", "python_vehicle.py", format::python_vehicle},
-    EngineFile{"ardupilot", "ardupilot.parm", format::ardupilot_parm}};
+    EngineFile{"python_vehicle_simulator", "python_vehicle.py", format::python_vehicle}};
 
 struct IdentifyArguments : IdentificationOptions {
   std::optional<double> mass_kg;
@@ -137,16 +134,14 @@ void add_simulators(const study::Identification& found, const format::Identified
 study::CertificateList certificates_of(const format::IdentifiedVehicle& vehicle,
                                        const study::RecordedDrive& drive,
                                        const std::vector<EngineFile>& wanted) {
-  std::vector<vehicle::Engine> engines;
+  std::vector<simulator::Engine> engines;
   std::ranges::copy_if(
-      vehicle::engines(), std::back_inserter(engines), [&](const vehicle::Engine& engine) {
+      simulator::engines(), std::back_inserter(engines), [&](const simulator::Engine& engine) {
         return engine.name == kOwn || std::ranges::any_of(wanted, [&](const EngineFile& one) {
                  return engine.name == one.engine;
                });
       });
-  vehicle::EngineBody body = vehicle::engine_body(vehicle.body, vehicle.identified);
-  body.usual_speed = vehicle.usual_speed;
-  return study::certify(engines, body, drive);
+  return study::certify(engines, simulator::engine_body(vehicle.body, vehicle.identified), drive);
 }
 
 // An identification with what its files need.
@@ -160,7 +155,8 @@ struct Identified {
 // On six axes, where the vehicle file has the thrusters of the log; else nothing, with the reason.
 std::optional<Identified> on_six_axes(const IdentifyArguments& options,
                                       const study::KnownThrust& wish,
-                                      const vehicle::VehicleParameters& vehicle, std::string& why) {
+                                      const simulator::VehicleParameters& vehicle,
+                                      std::string& why) {
   const std::optional<SixAxisLog> log = six_axis_log(options, options.six, vehicle, why);
   if (!log) {
     return std::nullopt;
@@ -209,7 +205,7 @@ Identified in_plane(const IdentifyArguments& options, const study::KnownThrust& 
 
 Identified identified(const IdentifyArguments& options, const study::KnownThrust& wish,
                       const Base& base) {
-  if (base && !vehicle::drives_in_plane(*base)) {
+  if (base && !simulator::drives_in_plane(*base)) {
     std::string why;
     if (std::optional<Identified> six = on_six_axes(options, wish, *base, why)) {
       return *std::move(six);
@@ -246,7 +242,7 @@ void run_identify(const IdentifyArguments& given) {
   IdentifyArguments options = given;
   begin_six_axes(options.six, options);
   const Base base =
-      options.six.vehicle.empty() ? Base() : Base(vehicle::read_vehicle(options.six.vehicle));
+      options.six.vehicle.empty() ? Base() : Base(simulator::read_vehicle(options.six.vehicle));
   const study::KnownThrust wish = known_thrust(options, base);
   const std::vector<EngineFile> wanted = wanted_files(options.engines);
   std::vector<std::string> inputs = options.files();
@@ -254,7 +250,6 @@ void run_identify(const IdentifyArguments& given) {
   const file::OutFolder out = take_out_folder(options.out, all_files(), inputs);
   Identified result = identified(options, wish, base);
   if (result.vehicle) {
-    result.vehicle->usual_speed = format::usual_speed(result.drive);
     result.found.certificates = certificates_of(*result.vehicle, result.drive, wanted);
   }
   const file::FileSet files = files_of(result, wanted);
@@ -300,7 +295,7 @@ void add_identify(CLI::App& app) {
   add_frame_option(*command, options->six.frame);
   add_list(command, "--for", options->engines,
            "simulators to write for, separated by commas; else all: kelpie, gazebo, gazebo_plugin, "
-           "uuv_simulator, stonefish, blue, orca4, mss, python_vehicle_simulator, ardupilot");
+           "uuv_simulator, stonefish, mss, python_vehicle_simulator");
   add_seed(command, options->seed);
   add_out(command, options->out, "folder for the parameters and files of simulators");
   options->answer.add_to(*command, "the parameters as JSON");

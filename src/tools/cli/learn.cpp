@@ -24,20 +24,20 @@
 #include "format/model_json.hpp"
 #include "format/result_json.hpp"
 #include "format/run_checkpoint.hpp"
+#include "identify/six_axis_fit.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "model/six_axis_fit.hpp"
 #include "model/snapshot.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
 #include "report/verdict.hpp"
+#include "simulator/scenario_file.hpp"
 #include "study/nominal.hpp"
 #include "study/six_axes.hpp"
 #include "study/split.hpp"
-#include "vehicle/scenario_file.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -107,7 +107,7 @@ study::Nominal nominal_of(const std::string& file, const LearnArguments& options
   const std::size_t states =
       find_states(settings.states, data.input_names, data.target_names.size()).size();
   const double neutral = plan.alignment.alignment.actuators.empty() ? kNeutralPulseUs : 0.0;
-  return study::nominal_of(vehicle::read_vehicle(file), data, settings.states, terms,
+  return study::nominal_of(simulator::read_vehicle(file), data, settings.states, terms,
                            body_frame(options.frame, states == kSixAxes), neutral);
 }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <system_error>
 
 #include "chart/wording.hpp"
@@ -60,43 +60,53 @@ void refuse_special(std::string_view option, const fs::path& file) {
   }
 }
 
-bool silent = false;
-bool hushed = false;
-bool brief = false;
-std::string* kept = nullptr;
+struct Printing {
+  Streams streams;
+  bool hushed = false;
+  bool brief = false;
+};
+Printing printing;
 
 }  // namespace
 
-KeptOutput::KeptOutput() {
-  kept = &text_;
+const Streams& streams() {
+  return printing.streams;
 }
 
-KeptOutput::~KeptOutput() {
-  kept = nullptr;
+StreamGuard::StreamGuard(const Streams& streams) {
+  printing = {.streams = streams};
 }
 
-void be_silent() {
-  silent = true;
+StreamGuard::~StreamGuard() {
+  printing = {};
+}
+
+TextStream::TextStream() : file_(::open_memstream(&text_, &size_)) {}
+
+TextStream::~TextStream() {
+  static_cast<void>(std::fclose(file_));
+  std::free(text_);  // NOLINT: as open_memstream wants it
+}
+
+std::string TextStream::text() const {
+  static_cast<void>(std::fflush(file_));
+  return {text_, size_};
 }
 
 void hush(bool wanted) {
-  hushed = wanted;
+  printing.hushed = wanted;
 }
 
 void be_brief(bool wanted) {
-  brief = wanted;
+  printing.brief = wanted;
 }
 
 bool is_brief() {
-  return brief;
+  return printing.brief;
 }
 
 void print_document(std::string_view text) {
-  if (kept != nullptr) {
-    kept->append(text);
-  } else if (!silent) {
-    print_safely(stdout, text);
-  }
+  print_safely(printing.streams.out, text);
 }
 
 void print_safely(std::FILE* stream, std::string_view text) {
@@ -110,20 +120,20 @@ void print_safely(std::FILE* stream, std::string_view text) {
   static_cast<void>(std::fwrite(safe.data(), 1, safe.size(), stream));  // finish_output() looks
 }
 
-void print_unless_silent(std::FILE* stream, std::string_view text) {
-  const bool is_hushed = hushed && stream == stdout;
-  if (kept != nullptr && !is_hushed) {
-    kept->append(text);
-  } else if (kept == nullptr && !silent && !is_hushed) {
-    print_safely(stream, text);
+void print_said(std::string_view text) {
+  if (!printing.hushed) {
+    print_document(text);
   }
+}
+
+void print_warning(std::string_view text) {
+  print_safely(printing.streams.err, text);
 }
 
 void finish_output() {
   errno = 0;
-  std::cout.flush();
-  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
-  if (!written) {
+  std::FILE* const out = printing.streams.out;
+  if (std::fflush(out) != 0 || std::ferror(out) != 0) {
     const std::string reason = errno == 0 ? "" : ": " + std::generic_category().message(errno);
     throw Failure("standard output: cannot be written" + reason);
   }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -17,27 +18,46 @@ namespace kelpie::cli {
 /// ends and tabs stay.
 void print_safely(std::FILE* stream, std::string_view text);
 
-/// What say() and warn() print while this object lives, in the order of printing, kept instead of
-/// printed: for programs that run commands. At most one instance at a time, before other threads.
-class KeptOutput {
- public:
-  KeptOutput();
-  ~KeptOutput();
-  KeptOutput(const KeptOutput&) = delete;
-  KeptOutput& operator=(const KeptOutput&) = delete;
-
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
+/// Output and error stream of a program.
+struct Streams {
+  std::FILE* out = stdout;
+  std::FILE* err = stderr;
 };
 
-/// print_safely(), unless be_silent() was called or a KeptOutput lives.
-void print_unless_silent(std::FILE* stream, std::string_view text);
+/// The streams that commands print to; the standard streams where no StreamGuard lives.
+const Streams& streams();
 
-/// Switches say() and warn() off, for a process that only helps another process; errors are still
-/// printed.
-void be_silent();
+/// Commands print to the given streams during the lifetime of the guard, and begin neither
+/// hushed nor brief: for programs that run commands. At most one instance at a time, made before
+/// other threads.
+class StreamGuard {
+ public:
+  explicit StreamGuard(const Streams& streams);
+  ~StreamGuard();
+  StreamGuard(const StreamGuard&) = delete;
+  StreamGuard& operator=(const StreamGuard&) = delete;
+};
+
+/// A stream that keeps its text.
+class TextStream {
+ public:
+  TextStream();
+  ~TextStream();
+  TextStream(const TextStream&) = delete;
+  TextStream& operator=(const TextStream&) = delete;
+
+  std::FILE* file() const { return file_; }
+  std::string text() const;
+
+ private:
+  char* text_ = nullptr;
+  std::size_t size_ = 0;
+  std::FILE* file_;
+};
+
+/// What say() and warn() call.
+void print_said(std::string_view text);
+void print_warning(std::string_view text);
 
 /// Switches say() off, or on again.
 void hush(bool wanted);
@@ -46,23 +66,22 @@ void hush(bool wanted);
 void be_brief(bool wanted);
 bool is_brief();
 
-/// Prints to the standard output stream, hushed or not, but not after be_silent(); a KeptOutput
-/// keeps the text.
+/// Prints to the output stream, hushed or not.
 void print_document(std::string_view text);
 
-/// Prints to the standard output stream.
+/// Prints to the output stream, unless hushed.
 template <typename... Values>
 void say(fmt::format_string<Values...> format, Values&&... values) {
-  print_unless_silent(stdout, fmt::format(format, std::forward<Values>(values)...));
+  print_said(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Prints to the standard error stream.
+/// Prints to the error stream.
 template <typename... Values>
 void warn(fmt::format_string<Values...> format, Values&&... values) {
-  print_unless_silent(stderr, fmt::format(format, std::forward<Values>(values)...));
+  print_warning(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Flushes the standard output stream. Throws Failure where writing failed.
+/// Flushes the output stream. Throws Failure where writing failed.
 void finish_output();
 
 /// Checks a file that a command will write, named by `option`. Throws InputError on one of the

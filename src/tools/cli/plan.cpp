@@ -24,12 +24,12 @@
 #include "format/settings_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "motion/signal_names.hpp"
-#include "motion/tuning.hpp"
 #include "report/drive_report.hpp"
+#include "simulator/scenario_file.hpp"
 #include "study/drive_plan.hpp"
 #include "study/identification.hpp"
 #include "study/six_axes.hpp"
-#include "vehicle/scenario_file.hpp"
+#include "vehicle/tuning.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -165,7 +165,7 @@ format::PlannedDrive planned_in_plane(const DriveArguments& options) {
 }
 
 format::PlannedDrive planned_on_six_axes(const DriveArguments& options,
-                                         const vehicle::VehicleParameters& file) {
+                                         const simulator::VehicleParameters& file) {
   std::string why;
   const std::optional<SixAxisLog> log = six_axis_log(options, options.six, file, why);
   if (!log) {
@@ -205,8 +205,8 @@ format::PlannedDrive planned_on_six_axes(const DriveArguments& options,
 
 format::PlannedDrive planned(const DriveArguments& options) {
   if (!options.six.vehicle.empty()) {
-    const vehicle::VehicleParameters file = vehicle::read_vehicle(options.six.vehicle);
-    if (!vehicle::drives_in_plane(file)) {
+    const simulator::VehicleParameters file = simulator::read_vehicle(options.six.vehicle);
+    if (!simulator::drives_in_plane(file)) {
       return planned_on_six_axes(options, file);
     }
   }

@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "cli/output.hpp"
+
 namespace kelpie::cli {
 namespace {
 
@@ -16,12 +18,12 @@ constexpr std::size_t kWidth = 30;
 
 ProgressBar::ProgressBar(std::string what)
     : what_(std::move(what)),
-      terminal_(isatty(STDERR_FILENO) == 1),
+      terminal_(isatty(::fileno(streams().err)) == 1),
       start_(std::chrono::steady_clock::now()) {}
 
 ProgressBar::~ProgressBar() {
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K");
+    fmt::print(streams().err, "\r\033[K");
   }
 }
 
@@ -36,8 +38,9 @@ void ProgressBar::at(double share) {
   drawn_ = now;
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   const auto full = static_cast<std::size_t>(share * static_cast<double>(kWidth));
-  fmt::print(stderr, "\r\033[K{} [{:#>{}}{:.>{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "",
-             kWidth - full, 100.0 * share, share > 0.0 ? elapsed_s * (1.0 - share) / share : 0.0);
+  fmt::print(streams().err, "\r\033[K{} [{:#>{}}{:.>{}}] {:3.0f} %  {:.0f} s left", what_, "", full,
+             "", kWidth - full, 100.0 * share,
+             share > 0.0 ? elapsed_s * (1.0 - share) / share : 0.0);
 }
 
 }  // namespace kelpie::cli

@@ -6,7 +6,7 @@
 
 namespace kelpie::cli {
 
-/// A progress bar on the standard error stream; silent unless the stream is a terminal.
+/// A progress bar on the error stream; silent unless the stream is a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string what);

@@ -107,8 +107,8 @@ const CLI::App* idle_command(const CLI::App& app) {
 
 // What was said before an error appears before it.
 int failed(int code, const std::exception& error) {
-  static_cast<void>(std::fflush(stdout));  // it fails already
-  print_safely(stderr, fmt::format("kelpie: {}\n", error.what()));
+  static_cast<void>(std::fflush(streams().out));  // it fails already
+  print_safely(streams().err, fmt::format("kelpie: {}\n", error.what()));
   return code;
 }
 
@@ -123,7 +123,8 @@ std::size_t help_width() {
   double width = 0.0;
   const char* const columns = std::getenv("COLUMNS");  // NOLINT(concurrency-mt-unsafe)
   if (columns == nullptr || !parse_number(columns, width)) {
-    const bool is_terminal = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
+    const bool is_terminal =
+        ioctl(::fileno(streams().out), TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
     width = static_cast<double>(is_terminal ? window.ws_col : kUsual);
   }
   return static_cast<std::size_t>(std::clamp<double>(width, kLeast, kMost));
@@ -196,24 +197,39 @@ void give_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
   }
 }
 
+// CLI11 takes the last word first.
+void parse(CLI::App& app, const std::vector<std::string>& words) {
+  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+}
+
+// The parser prints what ended it: a help, or what the words lack.
+int ended(const CLI::App& app, const CLI::Error& error) {
+  std::ostringstream out;
+  std::ostringstream err;
+  const int code = app.exit(error, out, err);
+  print_safely(streams().out, out.str());
+  print_safely(streams().err, err.str());
+  return code == 0 ? 0 : kBadInput;
+}
+
 }  // namespace
 
-int run_program(CLI::App& app, int argc, char** argv) {
+int run_program(CLI::App& app, const std::vector<std::string>& words, const Streams& streams) {
+  const StreamGuard guard(streams);
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a write beyond the limit fails instead
   try {
     check_numbers(app);
     app.failure_message(failure_message);
     try {
-      app.parse(argc, argv);
+      parse(app, words);
     } catch (const CLI::RequiredError& error) {
       if (const CLI::App* const idle = idle_command(app)) {
-        print_safely(stderr, idle->help(idle == &app ? "" : app.get_name()));
-      } else {
-        app.exit(error);
+        print_safely(streams.err, idle->help(idle == &app ? "" : app.get_name()));
+        return kBadInput;
       }
-      return kBadInput;
+      return ended(app, error);
     } catch (const CLI::ParseError& error) {
-      if (app.exit(error) != 0) {
+      if (ended(app, error) != 0) {
         return kBadInput;
       }
     }
@@ -229,8 +245,7 @@ int run_program(CLI::App& app, int argc, char** argv) {
 void run_command(CLI::App& app, const std::vector<std::string>& words) {
   check_numbers(app);
   try {
-    app.parse(
-        std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last first
+    parse(app, words);
   } catch (const CLI::ParseError& error) {
     throw InputError(std::string(trimmed(failure_message(&app, error))));
   }

@@ -8,9 +8,9 @@
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "log/dataset.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::cli {
 namespace {
@@ -23,15 +23,15 @@ struct SimulateArguments {
 
 void run_simulate(const SimulateArguments& options) {
   check_output("--out", options.out, {options.scenario});
-  vehicle::Scenario scenario = vehicle::read_scenario(options.scenario);
+  simulator::Scenario scenario = simulator::read_scenario(options.scenario);
   scenario.seed = options.seed.value_or(scenario.seed);
   ProgressBar bar("simulating");
-  const vehicle::Progress progress = [&](double share) { bar.at(share); };
+  const simulator::Progress progress = [&](double share) { bar.at(share); };
   const log::Table table = in_file(options.scenario, [&] {
-    return scenario.log == vehicle::LogKind::six
-               ? study::log_table(vehicle::simulate_six_axes(scenario, progress), scenario.vehicle,
-                                  options.scenario)
-               : study::log_table(vehicle::simulate(scenario, progress), options.scenario);
+    return scenario.log == simulator::LogKind::six
+               ? study::log_table(simulator::simulate_six_axes(scenario, progress),
+                                  scenario.vehicle, options.scenario)
+               : study::log_table(simulator::simulate(scenario, progress), options.scenario);
   });
   log::write_csv(options.out, table);
   say("{}: {} rows, {} s at {} Hz, seed {}\n", options.out, table.rows(), scenario.duration_s(),

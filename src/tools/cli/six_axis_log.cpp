@@ -42,7 +42,7 @@ void refuse_volts_in_plane(const SixAxisOptions& six) {
 }
 
 std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions& six,
-                                       const vehicle::VehicleParameters& vehicle,
+                                       const simulator::VehicleParameters& vehicle,
                                        std::string& why) {
   const bool find_times = options.align != "none";
   if (options.align == "auto") {
@@ -63,11 +63,11 @@ std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions
 
 std::vector<std::pair<std::string, double>> of_full_commands(
     std::vector<std::pair<std::string, double>> thrusts,
-    const vehicle::VehicleParameters& vehicle) {
+    const simulator::VehicleParameters& vehicle) {
   for (auto& [name, value] : thrusts) {
-    const auto thruster = std::ranges::find(vehicle.thrusters, name, &vehicle::Thruster::name);
+    const auto thruster = std::ranges::find(vehicle.thrusters, name, &simulator::Thruster::name);
     if (thruster != vehicle.thrusters.end() &&
-        vehicle.command_unit == vehicle::CommandUnit::speed) {
+        vehicle.command_unit == simulator::CommandUnit::speed) {
       value *= thruster->max_speed_rps * thruster->max_speed_rps;
     }
   }

@@ -42,10 +42,12 @@ void begin_six_axes(const SixAxisOptions& six, PlanOptions& options);
 /// Reads the log; nothing where columns are missing, which `why` then names. Throws as plan_log()
 /// and study::six_axis_columns() do.
 std::optional<SixAxisLog> six_axis_log(PlanOptions options, const SixAxisOptions& six,
-                                       const vehicle::VehicleParameters& vehicle, std::string& why);
+                                       const simulator::VehicleParameters& vehicle,
+                                       std::string& why);
 
 /// Thrusts of --thrust, N per square of the log's unit, as of full commands.
 std::vector<std::pair<std::string, double>> of_full_commands(
-    std::vector<std::pair<std::string, double>> thrusts, const vehicle::VehicleParameters& vehicle);
+    std::vector<std::pair<std::string, double>> thrusts,
+    const simulator::VehicleParameters& vehicle);
 
 }  // namespace kelpie::cli

@@ -126,7 +126,7 @@ file::OutFolder take_study_folder(const StudyArguments& options) {
   return take_out_folder(options.out, {kStudyJson, kStudyHtml}, {options.file, options.against});
 }
 
-void lead_study(const StudyArguments& options, jobs::Executor& executor, StudyInput input) {
+void run_whole(const StudyArguments& options, jobs::Executor& executor, StudyInput input) {
   find_input(options, input);
   const file::OutFolder out = take_study_folder(options);
   fleet::Results results(input.plan, input.missions, out.path());
@@ -175,21 +175,13 @@ void merge_parts(const StudyArguments& options, StudyInput input) {
 void run_study(const StudyArguments& options) {
   options.answer.begin();
   StudyInput input{.plan = fleet::read_plan(options.file), .missions = {}, .earlier = {}};
-  if (options.merge || options.part) {
-    jobs::require_single_process(options.merge ? "--merge" : "--part");
-  }
   if (options.merge) {
     return merge_parts(options, std::move(input));
   }
   if (options.part) {
     return run_part(options, *jobs::make_thread_executor(options.threads), std::move(input));
   }
-  const std::unique_ptr<jobs::Executor> executor = jobs::make_executor(options.threads);
-  if (executor->leads()) {
-    return lead_study(options, *executor, std::move(input));
-  }
-  const InterruptGuard guard;
-  fleet::help(input.plan, options.out, *executor, [](double) { return !InterruptGuard::asked(); });
+  run_whole(options, *jobs::make_executor(options.threads), std::move(input));
 }
 
 }  // namespace

@@ -202,19 +202,11 @@ void write_tuned(const TuneArguments& options, const std::string& logs_text,
 void run_tune(const TuneArguments& options) {
   options.answer.begin();
   const std::unique_ptr<jobs::Executor> executor = jobs::make_executor(options.threads);
-  if (!executor->leads()) {
-    be_silent();
-  }
   TuneLogs opened = open_tune_logs(options);
   const std::string logs_text = opened.text;
   const study::TuneProblem problem = make_problem(options, std::move(opened));
   study::TuneOptions tuning = make_tuning(options);
   const InterruptGuard guard;
-  if (!executor->leads()) {
-    tuning.keep_going = [](double) { return !InterruptGuard::asked(); };
-    study::help_to_tune(problem, tuning, journal_file(options), *executor);
-    return;
-  }
   const file::OutFolder out = take_out_folder(
       options.out, {"tuned.toml", "tune.json", "tune.html", kJournalName}, options.files());
   const study::TuneJournal::Header header = study::journal_header(problem, tuning);

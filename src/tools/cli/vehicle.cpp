@@ -19,16 +19,16 @@
 #include "file/content.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/stability.hpp"
-#include "vehicle/thruster_frame.hpp"
-#include "vehicle/vehicle_text.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/stability.hpp"
+#include "simulator/thruster_frame.hpp"
+#include "simulator/vehicle_text.hpp"
 
 namespace kelpie::cli {
 namespace {
 
-using vehicle::Thruster;
-using vehicle::VehicleParameters;
+using simulator::Thruster;
+using simulator::VehicleParameters;
 
 constexpr std::size_t kMostBytes = 1'000'000;  // of a table of thrusters
 constexpr std::array<const char*, 6> kPlaces{"x", "y", "z", "dx", "dy", "dz"};
@@ -126,10 +126,10 @@ VehicleParameters body_of(const NewVehicleArguments& options, const Eigen::Vecto
     if (options.mass_kg <= 0.0) {
       throw InputError("--mass", "give the mass in kg and --size, or --like with a vehicle file");
     }
-    return vehicle::similar_vehicle(options.mass_kg, size_m);
+    return simulator::similar_vehicle(options.mass_kg, size_m);
   }
-  VehicleParameters body = vehicle::read_vehicle(options.like);
-  if (body.command_unit == vehicle::CommandUnit::speed) {
+  VehicleParameters body = simulator::read_vehicle(options.like);
+  if (body.command_unit == simulator::CommandUnit::speed) {
     throw InputError("--like", options.like +
                                    " takes commands as speeds of rotors; thrusts at full command "
                                    "belong to a vehicle that takes pwm or share");
@@ -154,7 +154,7 @@ VehicleParameters new_vehicle(const NewVehicleArguments& options) {
   VehicleParameters result = body_of(options, size_m);
   if (!options.frame.empty()) {
     try {
-      result.thrusters = vehicle::frame_thrusters(options.frame, size_m);
+      result.thrusters = simulator::frame_thrusters(options.frame, size_m);
     } catch (const InputError& error) {
       throw InputError("--frame", error.what());
     }
@@ -199,21 +199,21 @@ std::string head_of(const NewVehicleArguments& options) {
 
 // Which axes the thrusters drive, a line each where an axis is not driven by itself.
 void say_axes(const VehicleParameters& of) {
-  const auto driven = vehicle::driven_axes(of.thrusters);
+  const auto driven = simulator::driven_axes(of.thrusters);
   std::vector<std::string> alone;
   for (std::size_t axis = 0; axis < driven.size(); ++axis) {
-    if (driven.at(axis) == vehicle::AxisDrive::alone) {
-      alone.emplace_back(vehicle::axis_text(axis));
+    if (driven.at(axis) == simulator::AxisDrive::alone) {
+      alone.emplace_back(simulator::axis_text(axis));
     }
   }
   say("{} thrusters, {} independent wrenches; driven by themselves: {}\n", of.thrusters.size(),
-      vehicle::wrench_rank(of.thrusters), alone.empty() ? "no axis" : join_text(alone, ", "));
+      simulator::wrench_rank(of.thrusters), alone.empty() ? "no axis" : join_text(alone, ", "));
   for (std::size_t axis = 0; axis < driven.size(); ++axis) {
-    if (driven.at(axis) == vehicle::AxisDrive::none) {
-      say("{} cannot be driven: no thruster pushes along this axis\n", vehicle::axis_text(axis));
-    } else if (driven.at(axis) == vehicle::AxisDrive::together) {
+    if (driven.at(axis) == simulator::AxisDrive::none) {
+      say("{} cannot be driven: no thruster pushes along this axis\n", simulator::axis_text(axis));
+    } else if (driven.at(axis) == simulator::AxisDrive::together) {
       say("{} cannot be driven by itself: every push along this axis pushes another axis, too\n",
-          vehicle::axis_text(axis));
+          simulator::axis_text(axis));
     }
   }
 }
@@ -221,7 +221,7 @@ void say_axes(const VehicleParameters& of) {
 void run_new(const NewVehicleArguments& options) {
   check_output("--out", options.out, {options.csv, options.like});
   const VehicleParameters made = new_vehicle(options);
-  file::write_file_whole(options.out, head_of(options) + vehicle::vehicle_text(made));
+  file::write_file_whole(options.out, head_of(options) + simulator::vehicle_text(made));
   say("{}\n", options.out);
   say_axes(made);
 }
@@ -235,7 +235,7 @@ void add_vehicle(CLI::App& app) {
   const auto [made, options] = add_command(
       *command, "new", "Write a vehicle file for a frame of thrusters, and check it", run_new);
   made->add_option("--frame", options->frame,
-                   "A frame of ArduSub: " + join_text(vehicle::frame_names(), ", "));
+                   "A frame of ArduSub: " + join_text(simulator::frame_names(), ", "));
   add_file(made, "--thrusters", options->csv,
            "CSV file with the columns name,x,y,z,dx,dy,dz: place in m, direction; FRD");
   made->add_option("--thruster", options->thrusters,
@@ -265,7 +265,7 @@ void add_vehicle(CLI::App& app) {
   CLI::App* const check =
       command->add_subcommand("check", "Check a vehicle file, and tell which axes it can drive");
   add_file(check, "file", *checked, "Vehicle file")->required();
-  check->callback([checked] { say_axes(vehicle::read_vehicle(*checked)); });
+  check->callback([checked] { say_axes(simulator::read_vehicle(*checked)); });
   add_examples(check, "vehicle check vehicles/bluerov2.toml", "vehicle check rov.toml");
   add_examples(command,
                "vehicle new --frame vectored --mass 11 --size 0.46,0.34,0.25 --out rov.toml",

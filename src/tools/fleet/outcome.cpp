@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numeric>
 
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "study/alignment.hpp"
 #include "study/diagnosis.hpp"
 #include "study/summary.hpp"

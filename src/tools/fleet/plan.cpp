@@ -204,18 +204,4 @@ std::filesystem::path Plan::folder() const {
   return std::filesystem::absolute(file).lexically_normal().parent_path();
 }
 
-std::string Plan::identity() const {
-  const file::Json json = {
-      {"name", name},
-      {"sources", file::list(sources, [](const Source& one) { return one.identity; })},
-      {"splits", file::list(splits,
-                            [](const SplitOptions& one) {
-                              return file::Json::array({one.split, one.seed});
-                            })},
-      {"learners", file::list(learners, [](const LearnerConfig& one) {
-         return file::Json{{"name", one.name}, {"set", one.set}};
-       })}};
-  return file::one_line(json);
-}
-
 }  // namespace kelpie::fleet

@@ -47,7 +47,6 @@ struct Plan {
   std::vector<LearnerConfig> learners;
 
   std::filesystem::path folder() const;  ///< of the file, absolute: base of relative paths
-  std::string identity() const;          ///< the plan without the logs' paths, in canonical form
 };
 
 /// Reads a study's file and the configurations named in the file. Throws InputError (file, line,

@@ -20,11 +20,13 @@ using file::Json;
 constexpr const char* kKind = "kelpie-study-journal";
 constexpr const char* kError = "error";  // key of a result that says why there is no outcome
 
-jobs::JournalPlace journal_of(const Plan& plan, const std::filesystem::path& folder,
-                              const std::optional<Part>& part) {
-  const std::string name =
-      part ? fmt::format("journal.part-{}-of-{}.jsonl", part->number, part->count) : kJournalName;
-  return {folder / name, kKind, {{"kelpie", kelpie_version()}, {"study", plan.name}}};
+std::string journal_name(const std::optional<Part>& part) {
+  return part ? fmt::format("journal.part-{}-of-{}.jsonl", part->number, part->count)
+              : kJournalName;
+}
+
+jobs::JournalHeader header_of(const Plan& plan) {
+  return {{"kelpie", kelpie_version()}, {"study", plan.name}};
 }
 
 // Of a journal's file name; none where it isn't that of a part.
@@ -34,17 +36,6 @@ std::optional<Part> part_in(const std::string& name) {
   return std::regex_match(name, match, pattern)
              ? std::optional(Part{std::stoul(match[1]), std::stoul(match[2])})
              : std::nullopt;
-}
-
-jobs::Run run_of(const Plan& plan, Worker& worker, const std::filesystem::path& folder,
-                 const std::function<bool(double)>& keep_going) {
-  return {.jobs = {},
-          .work = [&worker](const jobs::Job& job,
-                            const jobs::Advance& advance) { return worker(job, advance); },
-          .done = [](std::size_t, const std::string&) {},
-          .keep_going = keep_going,
-          .identity = fmt::format("kelpie {}, study {}", kelpie_version(), plan.identity()),
-          .journal = journal_of(plan, folder, {})};
 }
 
 // What is wrong with a log, by the name that it has in the study, wherever its folder is.
@@ -75,9 +66,9 @@ Part Part::parse(const std::string& text) {
 Results::Results(const Plan& plan, const std::vector<Mission>& missions,
                  const std::filesystem::path& folder, Access access, std::optional<Part> part)
     : plan_(plan), missions_(missions), combinations_(plan, missions.size()) {
-  const jobs::JournalPlace own = journal_of(plan, folder, part);
+  const std::string own = journal_name(part);
   if (access == Access::run) {
-    own_ = std::make_unique<jobs::Journal>(own);
+    own_ = std::make_unique<jobs::Journal>(folder / own, kKind, header_of(plan));
   }
   open_others(folder, own);
   const std::vector<std::size_t> part_of =
@@ -98,13 +89,12 @@ std::vector<jobs::Job> Results::all_jobs() const {
   return jobs;
 }
 
-void Results::open_others(const std::filesystem::path& folder, const jobs::JournalPlace& own) {
+void Results::open_others(const std::filesystem::path& folder, const std::string& own) {
   std::vector<std::filesystem::directory_entry> files;
   if (std::filesystem::is_directory(folder)) {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
-      if (name.starts_with("journal.") && name.ends_with(".jsonl") &&
-          !(own_ && entry.path().filename() == own.file.filename())) {
+      if (name.starts_with("journal.") && name.ends_with(".jsonl") && !(own_ && name == own)) {
         files.push_back(entry);
       }
     }
@@ -113,7 +103,7 @@ void Results::open_others(const std::filesystem::path& folder, const jobs::Journ
     return std::pair(file.last_write_time(), file.path().string());
   });
   for (const auto& file : files) {
-    others_.push_back(std::make_unique<jobs::JournalReader>(file.path(), own.kind, own.header));
+    others_.push_back(std::make_unique<jobs::JournalReader>(file.path(), kKind, header_of(plan_)));
     if (const auto part = part_in(file.path().filename().string()); part && parts_ == 1) {
       parts_ = part->count;
     }
@@ -158,14 +148,18 @@ bool Results::run(jobs::Executor& executor, const std::function<bool(double)>& k
       jobs.push_back(job_of(plan_, missions_, combinations_[i]));
     }
   }
-  Worker worker(plan_);
-  jobs::Run run = run_of(plan_, worker, own_->file().parent_path(), keep_going);
-  run.jobs = jobs;
-  run.done = [&](std::size_t i, const std::string& result) {
-    own_->add(jobs[i].key, result);
-    enter(missing[i], result);
-  };
-  return executor.run(run);
+  Worker worker(plan_, missions_);
+  return executor.run({.jobs = jobs,
+                       .work =
+                           [&](std::size_t i, const jobs::Advance& advance) {
+                             return worker(combinations_[missing[i]], advance);
+                           },
+                       .done =
+                           [&](std::size_t i, const std::string& result) {
+                             own_->add(key(missing[i]), result);
+                             enter(missing[i], result);
+                           },
+                       .keep_going = keep_going});
 }
 
 void Results::enter(std::size_t i, const std::string& result) {
@@ -201,12 +195,6 @@ std::map<Part, std::size_t> Results::missing() const {
     }
   }
   return parts;
-}
-
-void help(const Plan& plan, const std::filesystem::path& folder, jobs::Executor& executor,
-          const std::function<bool(double)>& keep_going) {
-  Worker worker(plan);
-  executor.run(run_of(plan, worker, folder, keep_going));
 }
 
 }  // namespace kelpie::fleet

@@ -75,7 +75,7 @@ class Results {
  private:
   std::string key(std::size_t i) const { return key_of(plan_, missions_, combinations_[i]); }
   std::vector<jobs::Job> all_jobs() const;
-  void open_others(const std::filesystem::path& folder, const jobs::JournalPlace& own);
+  void open_others(const std::filesystem::path& folder, const std::string& own);
   void look_up();
   void enter(std::size_t i, const std::string& result);
 
@@ -89,9 +89,5 @@ class Results {
   std::map<std::size_t, std::string> failures_;
   std::size_t parts_ = 1;  // of the latest journal of a part
 };
-
-/// Runs jobs of a study in a process that does not lead. `folder` is the study's.
-void help(const Plan& plan, const std::filesystem::path& folder, jobs::Executor& executor,
-          const std::function<bool(double)>& keep_going);
 
 }  // namespace kelpie::fleet

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,22 +16,6 @@
 
 namespace kelpie::fleet {
 namespace {
-
-using file::Json;
-
-// A file's name is bytes. What is no UTF-8 would be repaired as text, and not be found again.
-Json name_json(const std::string& name) {
-  return file::is_utf8(name) ? Json(name)
-                             : Json(std::vector<std::uint8_t>(name.begin(), name.end()));
-}
-
-std::string name_from(const Json& json) {
-  if (json.is_string()) {
-    return json.get<std::string>();
-  }
-  const auto bytes = json.get<std::vector<std::uint8_t>>();
-  return {bytes.begin(), bytes.end()};
-}
 
 log::Dataset read(const Source& source, const std::string& file,
                   const std::string& held_out_column) {
@@ -91,28 +74,22 @@ std::optional<Outcome> learn(const log::Dataset& read, const Source& source,
 
 jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const Combination& one) {
   const Mission& mission = missions[one.mission];
-  const Json task = {{"log", name_json(mission.file.string())},
-                     {"source", mission.source},
-                     {"split", one.split},
-                     {"learner", one.learner}};
-  return {.key = key_of(plan, missions, one),
-          .task = file::one_line(task),
-          .cost = (1.0 + static_cast<double>(mission.bytes)) *
+  return {.cost = (1.0 + static_cast<double>(mission.bytes)) *
                   (kTuning.free_buffer +
                    buffer_of(plan.sources[mission.source], plan.learners[one.learner])),
           .kind = mission.source * plan.learners.size() + one.learner};
 }
 
-std::string Worker::operator()(const jobs::Job& job, const jobs::Advance& advance) {
+std::string Worker::operator()(const Combination& one, const jobs::Advance& advance) {
   const auto start = std::chrono::steady_clock::now();
   try {
-    const Json task = Json::parse(job.task);
-    const Source& source = plan_.sources.at(task.at("source").get<std::size_t>());
-    const SplitOptions& wish = plan_.splits.at(task.at("split").get<std::size_t>());
+    const Mission& mission = missions_[one.mission];
+    const Source& source = plan_.sources[mission.source];
+    const SplitOptions& wish = plan_.splits[one.split];
     const study::SplitSettings split = study::parse_split(wish.split, wish.seed);
-    const auto data = dataset(source, name_from(task.at("log")), split.column);
-    std::optional<Outcome> outcome = learn(
-        *data, source, plan_.learners.at(task.at("learner").get<std::size_t>()), split, advance);
+    const auto data = dataset(source, mission.file.string(), split.column);
+    std::optional<Outcome> outcome =
+        learn(*data, source, plan_.learners[one.learner], split, advance);
     if (!outcome) {
       return {};
     }

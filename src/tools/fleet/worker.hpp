@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "fleet/missions.hpp"
 #include "fleet/plan.hpp"
@@ -15,21 +16,22 @@
 
 namespace kelpie::fleet {
 
-/// A job of a study; every process with the same plan can do its task. The estimated cost is the
+/// A job of a study. The estimated cost is the
 /// size of the log in bytes times a factor of the learner's buffer (kTuning.free_buffer), equal for
 /// equal buffers, so that the jobs of a log stay together. A kind is a learner with a source.
 jobs::Job job_of(const Plan& plan, const std::vector<Mission>& missions, const Combination& one);
 
-/// Does jobs in any thread: study::learn() for a row of the plan. Each thread keeps its last log
-/// for the next job; threads share logs.
+/// Runs combinations in any thread: study::learn() for a row of the plan. Each thread keeps its
+/// last log for the next job; threads share logs.
 class Worker {
  public:
-  /// Requires that the plan outlives the worker.
-  explicit Worker(const Plan& plan) : plan_(plan) {}
+  /// Requires that plan and missions outlive the worker.
+  Worker(const Plan& plan, const std::vector<Mission>& missions)
+      : plan_(plan), missions_(missions) {}
 
   /// The outcome as JSON in one line (outcome_json), or an object with the message `error`; empty
   /// after a stop by `advance`.
-  std::string operator()(const jobs::Job& job, const jobs::Advance& advance);
+  std::string operator()(const Combination& one, const jobs::Advance& advance);
 
  private:
   struct Held {
@@ -42,6 +44,7 @@ class Worker {
   std::shared_ptr<Held> held(const std::string& name);
 
   const Plan& plan_;
+  const std::vector<Mission>& missions_;
   std::mutex mutex_;
   std::map<std::string, std::weak_ptr<Held>> logs_;
   std::map<std::thread::id, std::shared_ptr<Held>> last_;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/model/rollout.hpp"
 #include "kelpie/model/trained_model.hpp"
 

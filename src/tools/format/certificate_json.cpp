@@ -13,14 +13,14 @@ file::Json driven_json(const study::DrivenHorizon& horizon, const std::array<boo
   file::Json r2 = file::Json::object();
   for (std::size_t axis = 0; axis < free.size(); ++axis) {
     if (free[axis]) {
-      r2[vehicle::axis_text(axis)] = file::number(horizon.r2[axis]);
+      r2[simulator::axis_text(axis)] = file::number(horizon.r2[axis]);
     }
   }
   return {{"seconds", horizon.seconds}, {"starts", horizon.starts}, {"r2", r2}};
 }
 
 file::Json engine_json(const study::Certificate& certificate, const std::array<bool, 6>& free) {
-  const vehicle::StepLimit& limit = certificate.limit;
+  const simulator::StepLimit& limit = certificate.limit;
   file::Json horizons = file::Json::array();
   for (const study::DrivenHorizon& horizon : certificate.horizons) {
     horizons.push_back(driven_json(horizon, free));
@@ -32,8 +32,8 @@ file::Json engine_json(const study::Certificate& certificate, const std::array<b
           {"stable", limit.stable},
           {"largest_stable_step_s",
            limit.largest_s ? file::Json(*limit.largest_s) : file::Json(nullptr)},
-          {"limited_by", limit.term ? file::Json(vehicle::term_text(*limit.term)) : nullptr},
-          {"axis", limit.term ? file::Json(vehicle::axis_text(limit.axis)) : nullptr}};
+          {"limited_by", limit.term ? file::Json(simulator::term_text(*limit.term)) : nullptr},
+          {"axis", limit.term ? file::Json(simulator::axis_text(limit.axis)) : nullptr}};
 }
 
 }  // namespace

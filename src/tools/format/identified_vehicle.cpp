@@ -12,15 +12,16 @@
 #include "core/text.hpp"
 #include "format/tuning.hpp"
 #include "kelpie/core/error.hpp"
+#include "simulator/decomposition.hpp"
+#include "simulator/dynamics.hpp"
+#include "simulator/simulator.hpp"
 #include "study/six_axes.hpp"
 #include "study/tuning.hpp"
-#include "vehicle/dynamics.hpp"
-#include "vehicle/simulator.hpp"
 
 namespace kelpie::format {
 namespace {
 
-using vehicle::VehicleParameters;
+using simulator::VehicleParameters;
 
 constexpr std::array<Eigen::Index, kPlanarAxes> kOfSix{0, 1, 5};
 
@@ -99,7 +100,7 @@ IdentifiedThruster in_six(const PlanarThruster& thruster) {
           .direction = {c, s, 0.0}};
 }
 
-vehicle::Thruster file_thruster(const IdentifiedThruster& thruster) {
+simulator::Thruster file_thruster(const IdentifiedThruster& thruster) {
   return {.forward = thruster.forward,
           .reverse = thruster.reverse,
           .position_m = thruster.position_m,
@@ -128,35 +129,35 @@ void fill_slots(IdentifiedVehicle& result, bool has_verticals) {
   if (surge.size() != 2 || sway.size() != 1 || result.thrusters.size() != 3) {
     return;
   }
-  result.body.thrusters.resize(vehicle::kPlanarThrusterCount);
+  result.body.thrusters.resize(simulator::kPlanarThrusterCount);
   const auto put = [&](std::size_t slot, std::size_t i) {
     result.body.thrusters[slot] = file_thruster(result.thrusters[i]);
-    result.body.thrusters[slot].name = vehicle::planar_thruster_names()[slot];
+    result.body.thrusters[slot].name = simulator::planar_thruster_names()[slot];
   };
   const auto side = [&](std::size_t i) {  // negative: left of the middle
     return result.thrusters[i].position_m(1);
   };
   std::ranges::sort(surge, {}, side);
-  put(vehicle::kSurgeLeft, surge[0]);
-  put(vehicle::kSurgeRight, surge[1]);
-  put(vehicle::kSway, sway[0]);
+  put(simulator::kSurgeLeft, surge[0]);
+  put(simulator::kSurgeRight, surge[1]);
+  put(simulator::kSway, sway[0]);
   if (!has_verticals) {
-    for (const auto slot : {vehicle::kVerticalFront, vehicle::kVerticalRear}) {
-      vehicle::Thruster& vertical = result.body.thrusters[slot];
-      vertical = result.body.thrusters[vehicle::kSway];
-      vertical.name = vehicle::planar_thruster_names()[slot];
+    for (const auto slot : {simulator::kVerticalFront, simulator::kVerticalRear}) {
+      simulator::Thruster& vertical = result.body.thrusters[slot];
+      vertical = result.body.thrusters[simulator::kSway];
+      vertical.name = simulator::planar_thruster_names()[slot];
       vertical.direction = Eigen::Vector3d::UnitZ();
       vertical.position_m = {
-          slot == vehicle::kVerticalFront ? kTuning.vertical_arm_m : -kTuning.vertical_arm_m, 0.0,
+          slot == simulator::kVerticalFront ? kTuning.vertical_arm_m : -kTuning.vertical_arm_m, 0.0,
           0.0};
     }
   }
   result.has_slots = true;
 }
 
-vehicle::Vector6 velocity_of(const DriveColumns& columns, std::span<const double> inputs,
-                             Frame frame) {
-  vehicle::Vector6 velocity = vehicle::Vector6::Zero();
+simulator::Vector6 velocity_of(const DriveColumns& columns, std::span<const double> inputs,
+                               Frame frame) {
+  simulator::Vector6 velocity = simulator::Vector6::Zero();
   for (std::size_t axis = 0; axis < columns.velocities.size(); ++axis) {
     if (columns.velocities[axis]) {
       velocity(static_cast<Eigen::Index>(axis)) =
@@ -189,7 +190,7 @@ study::RecordedDrive drive_of(const IdentifiedVehicle& vehicle, const log::Datas
     drive.times_s.push_back(data.times_s[row]);
     drive.velocities.push_back(velocity_of(columns, inputs, frame));
     drive.attitudes.push_back(Eigen::Quaterniond::Identity());
-    vehicle::Vector6 force = vehicle.constant_force;
+    simulator::Vector6 force = vehicle.constant_force;
     for (std::size_t k = 0; k < columns.thrusters.size(); ++k) {
       force += vehicle.thrusters[k].force(columns.revolutions[k] * inputs[columns.thrusters[k]]);
     }
@@ -222,8 +223,8 @@ std::optional<double> told_value(const SixAxisFit& fit, std::size_t place) {
 }
 
 void set_inertias(const SixAxisFit& fit, VehicleParameters& body) {
-  const vehicle::Matrix6 rigid =
-      vehicle::rigid_body_mass(body.mass_kg, body.centre_of_gravity_m, body.inertia_kg_m2);
+  const simulator::Matrix6 rigid =
+      simulator::rigid_body_mass(body.mass_kg, body.centre_of_gravity_m, body.inertia_kg_m2);
   for (std::size_t axis = 0; axis < kSixAxes; ++axis) {
     const auto place = static_cast<Eigen::Index>(axis);
     const double added = fit.parameters[SixAxisPlace::inertia + axis].value - rigid(place, place);
@@ -257,7 +258,7 @@ void set_forces(const SixAxisFit& fit, VehicleParameters& body) {
                                         .value_or(body.quadratic_damping(place));
   }
   body.net_buoyancy_n = -told_value(fit, SixAxisPlace::net_weight).value_or(-body.net_buoyancy_n);
-  const double weight = body.mass_kg * vehicle::kGravity;
+  const double weight = body.mass_kg * simulator::kGravity;
   const double buoyancy = weight + body.net_buoyancy_n;
   for (std::size_t i = 0; i < 3; ++i) {
     if (const std::optional<double> moment = told_value(fit, SixAxisPlace::moment + i)) {
@@ -274,8 +275,9 @@ double IdentifiedThruster::thrust(double speed) const {
   return (speed > 0.0 ? forward : reverse) * speed * std::abs(speed);
 }
 
-vehicle::Vector6 IdentifiedThruster::force(double speed) const {
-  return thrust(speed) * (vehicle::Vector6() << direction, position_m.cross(direction)).finished();
+simulator::Vector6 IdentifiedThruster::force(double speed) const {
+  return thrust(speed) *
+         (simulator::Vector6() << direction, position_m.cross(direction)).finished();
 }
 
 IdentifiedVehicle identified_on_six_axes(const study::Identification& found,
@@ -284,18 +286,18 @@ IdentifiedVehicle identified_on_six_axes(const study::Identification& found,
   const SixAxisFit& fit = *found.six;
   IdentifiedVehicle result{.body = base};
   result.identified.fill(true);
-  result.speeds = base.command_unit == vehicle::CommandUnit::speed;
+  result.speeds = base.command_unit == simulator::CommandUnit::speed;
   result.speed_unit = result.speeds ? "in rev/s" : "as shares, -1 to 1, of the full command";
   result.has_slots = true;
   result.body.mass_kg = found.mass_kg.value_or(base.mass_kg);
   set_inertias(fit, result.body);
   set_forces(fit, result.body);
   result.body.rotor_lag_s = fit.curve.lag_s;
-  result.body.rotor_delay_s = std::round(fit.curve.delay_s * vehicle::kTicksPerSecond) /
-                              static_cast<double>(vehicle::kTicksPerSecond);
+  result.body.rotor_delay_s = std::round(fit.curve.delay_s * simulator::kTicksPerSecond) /
+                              static_cast<double>(simulator::kTicksPerSecond);
   result.body.battery.exponent = fit.curve.exponent;
   for (std::size_t i = 0; i < base.thrusters.size(); ++i) {
-    vehicle::Thruster& slot = result.body.thrusters[i];
+    simulator::Thruster& slot = result.body.thrusters[i];
     const double full = result.speeds ? slot.max_speed_rps * slot.max_speed_rps : 1.0;
     const std::size_t place = SixAxisPlace::thruster(i);
     slot.forward = fit.parameters[place].value / full;
@@ -351,7 +353,7 @@ study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle, const log:
 study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle,
                                     const study::Identification& found, const log::Dataset& data,
                                     const study::Split& split, const study::SixAxisColumns& columns,
-                                    const vehicle::VehicleParameters& base, Frame frame,
+                                    const simulator::VehicleParameters& base, Frame frame,
                                     double neutral, std::optional<int> only) {
   return of_chosen_rows(data, split, only, [&](const std::vector<std::size_t>& picked) {
     const SixAxisRows rows = study::six_axis_rows(data, picked, columns, base, frame, neutral);
@@ -360,10 +362,10 @@ study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle,
     study::RecordedDrive drive{.times_s = rows.times_s, .starts = rows.starts};
     for (std::size_t row = 0; row < rows.rows(); ++row) {
       drive.velocities.emplace_back(
-          Eigen::Map<const vehicle::Vector6>(rows.velocities.data() + kSixAxes * row));
+          Eigen::Map<const simulator::Vector6>(rows.velocities.data() + kSixAxes * row));
       const Eigen::Map<const Eigen::Vector3d> down(rows.down.data() + 3 * row);
-      drive.attitudes.push_back(Eigen::Quaterniond::FromTwoVectors(down, Eigen::Vector3d::UnitZ()));
-      vehicle::Vector6 force = vehicle::Vector6::Zero();
+      drive.attitudes.push_back(simulator::attitude_of(down));
+      simulator::Vector6 force = simulator::Vector6::Zero();
       for (std::size_t k = 0; k < count; ++k) {
         // The fit's thrusts are those of shares of the full command.
         const double share = speeds[row * count + k];
@@ -407,7 +409,7 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
   const double mass_kg = found.mass_kg.value_or(plane.surge_inertia /
                                                 (1.0 + study::kTuning.identification.added_share));
   result.body = base.value_or(assumed(plane, mass_kg));
-  const bool has_verticals = base && vehicle::drives_in_plane(*base);
+  const bool has_verticals = base && simulator::drives_in_plane(*base);
   result.body.mass_kg = mass_kg;
   result.rest = base
                     ? "heave, roll, pitch, buoyancy, rotors and hold as in " + base_file
@@ -422,16 +424,6 @@ IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame f
   set_plane(plane, result.body);
   fill_slots(result, has_verticals);
   return result;
-}
-
-vehicle::Vector6 usual_speed(const study::RecordedDrive& drive) {
-  vehicle::Vector6 thirds = vehicle::Vector6::Zero();
-  vehicle::Vector6 fourths = vehicle::Vector6::Zero();
-  for (const vehicle::Vector6& velocity : drive.velocities) {
-    thirds.array() += velocity.array().abs().cube();
-    fourths.array() += velocity.array().square().square();
-  }
-  return (thirds.array() > 0.0).select(fourths.array() / thirds.array(), 0.0).matrix();
 }
 
 }  // namespace kelpie::format

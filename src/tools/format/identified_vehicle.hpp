@@ -8,10 +8,10 @@
 
 #include "kelpie/motion/frame.hpp"
 #include "log/dataset.hpp"
+#include "simulator/parameters.hpp"
 #include "study/certificate.hpp"
 #include "study/identification.hpp"
 #include "study/six_axes.hpp"
-#include "vehicle/parameters.hpp"
 
 namespace kelpie::format {
 
@@ -26,19 +26,18 @@ struct IdentifiedThruster {
   bool reverse_told = false;  ///< else `reverse` equals `forward`
   double lag_s = 0.0;         ///< time constant; 0: none was found
 
-  double thrust(double speed_rps) const;           ///< N
-  vehicle::Vector6 force(double speed_rps) const;  ///< about the origin
+  double thrust(double speed_rps) const;             ///< N
+  simulator::Vector6 force(double speed_rps) const;  ///< about the origin
 };
 
 /// An identified vehicle in six degrees of freedom, for simulators: SI, frame FRD, about the origin
 /// of the measured velocities. Quantities outside the plane come from a base vehicle or are
 /// assumed.
 struct IdentifiedVehicle {
-  vehicle::VehicleParameters body{};  ///< thrusters only where `has_slots`
+  simulator::VehicleParameters body{};  ///< thrusters only where `has_slots`
   std::vector<IdentifiedThruster> thrusters{};
-  std::array<bool, 6> identified{};                            ///< axes that the log shows
-  vehicle::Vector6 usual_speed = vehicle::Vector6::Zero();     ///< for vehicle::quadratic_alone()
-  vehicle::Vector6 constant_force = vehicle::Vector6::Zero();  ///< in the log, FRD
+  std::array<bool, 6> identified{};                                ///< axes that the log shows
+  simulator::Vector6 constant_force = simulator::Vector6::Zero();  ///< in the log, FRD
   std::string rest{};        ///< source of heave, roll, pitch and the split of masses
   std::string speed_unit{};  ///< "rev/s", and whether the log said so
   bool speeds = true;        ///< thrusters by rev/s; else by shares of the full command
@@ -49,14 +48,14 @@ struct IdentifiedVehicle {
 /// Requires an identification with a scale. `base`: the file of --vehicle, or none. Throws
 /// InputError on a thruster's unit other than a speed, and on a mass above the identified inertia.
 IdentifiedVehicle identified_vehicle(const study::Identification& found, Frame frame,
-                                     const std::optional<vehicle::VehicleParameters>& base,
+                                     const std::optional<simulator::VehicleParameters>& base,
                                      const std::string& base_file);
 
 /// Requires an identification on six axes with a scale. `base`: the vehicle file with the
 /// thrusters; what the log doesn't tell is taken from it. Throws InputError on a mass above an
 /// inertia.
 IdentifiedVehicle identified_on_six_axes(const study::Identification& found,
-                                         const vehicle::VehicleParameters& base,
+                                         const simulator::VehicleParameters& base,
                                          const std::string& base_file);
 
 /// What a log shows of a vehicle in the plane: places among the inputs.
@@ -80,10 +79,7 @@ study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle, const log:
 study::RecordedDrive recorded_drive(const IdentifiedVehicle& vehicle,
                                     const study::Identification& found, const log::Dataset& data,
                                     const study::Split& split, const study::SixAxisColumns& columns,
-                                    const vehicle::VehicleParameters& base, Frame frame,
+                                    const simulator::VehicleParameters& base, Frame frame,
                                     double neutral, std::optional<int> only);
-
-/// For vehicle::quadratic_alone(): Σ v⁴ / Σ |v|³ of each axis; 0 on axes at rest.
-vehicle::Vector6 usual_speed(const study::RecordedDrive& drive);
 
 }  // namespace kelpie::format

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "files/model_block.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/unit.hpp"
-#include "model/model_block.hpp"
 
 namespace kelpie::format {
 

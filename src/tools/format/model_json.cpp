@@ -7,13 +7,13 @@
 #include "file/content.hpp"
 #include "file/json.hpp"
 #include "file/tuning.hpp"
+#include "files/model_json.hpp"
 #include "format/checkpoint_file.hpp"
 #include "format/model_parts.hpp"
 #include "format/steady_json.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/unit.hpp"
-#include "model/model_json.hpp"
 #include "model/snapshot.hpp"
 
 namespace kelpie::format {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "file/json.hpp"
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 
 namespace kelpie::format {
 

@@ -55,19 +55,10 @@ std::string uuv_xacro(const IdentifiedVehicle& vehicle, const std::string& sourc
 /// geometry, in comments. FRD.
 std::string stonefish_xml(const IdentifiedVehicle& vehicle, const std::string& source);
 
-/// Controller parameters of blue: FRD, derivatives (negative), thruster matrix.
-std::string blue_yaml(const IdentifiedVehicle& vehicle, const std::string& source);
-
-/// Model of motion of orca4: drag coefficients (positive) of a BlueROV2's areas.
-std::string orca4_yaml(const IdentifiedVehicle& vehicle, const std::string& source);
-
 /// Matrices for Fossen's MSS (MATLAB, Octave): FRD, all positive.
 std::string mss_m(const IdentifiedVehicle& vehicle, const std::string& source);
 
 /// The same for the Python Vehicle Simulator.
 std::string python_vehicle(const IdentifiedVehicle& vehicle, const std::string& source);
-
-/// Parameters of ArduPilot's SITL: net buoyancy.
-std::string ardupilot_parm(const IdentifiedVehicle& vehicle, const std::string& source);
 
 }  // namespace kelpie::format

@@ -8,10 +8,10 @@
 #include "core/text.hpp"
 #include "file/crc32.hpp"
 #include "file/json.hpp"
+#include "files/model_json.hpp"
 #include "format/model_parts.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
-#include "model/model_json.hpp"
 
 namespace kelpie::format {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "format/checkpoint_file.hpp"
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"

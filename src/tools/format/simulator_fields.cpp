@@ -8,14 +8,12 @@
 #include <numbers>
 
 #include "core/angle.hpp"
-#include "vehicle/engine.hpp"
 
 namespace kelpie::format {
 namespace {
 
 constexpr double kFreshWater = 1000.0;      // kg/m³
 constexpr double kUuvSeaWater = 1028.0;     // kg/m³, the default of UUV Simulator
-constexpr double kOrcaWater = 997.0;        // kg/m³, the default of orca4
 constexpr double kPropellerDiameter = 0.1;  // m; only its product with the coefficient counts
 constexpr double kPerRadians = 1.0 / (4.0 * std::numbers::pi * std::numbers::pi);  // of (rev/s)²
 
@@ -28,8 +26,8 @@ void add(Fields& fields, const char* name, double value) {
 }
 
 // FRD to FLU.
-vehicle::Matrix6 mirrored(const vehicle::Matrix6& matrix) {
-  const vehicle::Vector6 sign = (vehicle::Vector6() << 1, -1, -1, 1, -1, -1).finished();
+simulator::Matrix6 mirrored(const simulator::Matrix6& matrix) {
+  const simulator::Vector6 sign = (simulator::Vector6() << 1, -1, -1, 1, -1, -1).finished();
   return sign.asDiagonal() * matrix * sign.asDiagonal();
 }
 
@@ -71,7 +69,7 @@ std::string comment_text(const std::string& text) {
 }
 
 // The upper triangle, named as in SDFormat: xx, xy, … rr.
-std::string added_mass_sdf(const vehicle::Matrix6& added) {
+std::string added_mass_sdf(const simulator::Matrix6& added) {
   constexpr std::array kAxes{'x', 'y', 'z', 'p', 'q', 'r'};
   std::string text;
   for (std::size_t row = 0; row < kAxes.size(); ++row) {
@@ -84,7 +82,7 @@ std::string added_mass_sdf(const vehicle::Matrix6& added) {
   return text;
 }
 
-std::string damping_sdf(const vehicle::VehicleParameters& body) {
+std::string damping_sdf(const simulator::VehicleParameters& body) {
   constexpr std::array kLinear{"xU", "yV", "zW", "kP", "mQ", "nR"};
   constexpr std::array kQuadratic{"xUabsU", "yVabsV", "zWabsW", "kPabsP", "mQabsQ", "nRabsR"};
   std::string text;
@@ -98,7 +96,7 @@ std::string damping_sdf(const vehicle::VehicleParameters& body) {
 }
 
 // Added mass as derivatives, which are negative (SNAME 1950).
-std::string derivatives_sdf(const vehicle::VehicleParameters& body) {
+std::string derivatives_sdf(const simulator::VehicleParameters& body) {
   constexpr std::array kNames{"xDotU", "yDotV", "zDotW", "kDotP", "mDotQ", "nDotR"};
   std::string text;
   for (std::size_t i = 0; i < kNames.size(); ++i) {
@@ -119,31 +117,12 @@ Eigen::MatrixXd thruster_matrix(const IdentifiedVehicle& vehicle) {
   return matrix;
 }
 
-std::string short_numbers(const vehicle::Vector6& values) {
+std::string short_numbers(const simulator::Vector6& values) {
   std::string text;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     text += fmt::format("{}{:.3g}", i > 0 ? ", " : "", values(i) + 0.0);
   }
   return text;
-}
-
-// orca4 knows no linear drag and scales drag by the areas of a BlueROV2 (its model.hpp).
-void add_orca(const IdentifiedVehicle& vehicle, Fields& fields) {
-  constexpr double kLength = 0.457;  // m
-  constexpr double kWidth = 0.338;
-  constexpr double kHeight = 0.254;
-  const vehicle::Vector6 drag = vehicle::quadratic_alone(
-      vehicle.body.linear_damping, vehicle.body.quadratic_damping, vehicle.usual_speed);
-  const auto coefficient = [&](Eigen::Index axis, double area) {
-    return 2.0 * drag(axis) / (kOrcaWater * area);
-  };
-  add(fields, "orca_water", kOrcaWater);
-  add(fields, "orca_volume",
-      (vehicle.body.mass_kg + vehicle.body.net_buoyancy_n / vehicle::kGravity) / kOrcaWater);
-  add(fields, "orca_x", coefficient(0, kWidth * kHeight));
-  add(fields, "orca_y", coefficient(1, kLength * kHeight));
-  add(fields, "orca_z", coefficient(2, kLength * kWidth));
-  add(fields, "orca_yaw", drag(5) / kOrcaWater);
 }
 
 // Yaw and pitch that turn the x axis to a direction; with z up, pitch changes its sign.
@@ -207,30 +186,26 @@ namespace {
 
 // Matrices and lists of programs and YAML.
 void add_lists(const IdentifiedVehicle& vehicle, Fields& fields) {
-  const vehicle::VehicleParameters& body = vehicle.body;
+  const simulator::VehicleParameters& body = vehicle.body;
   add(fields, "inertia_m", rows_text(body.inertia_kg_m2, "  ", " ", ";\n"));
   add(fields, "inertia_py", rows_text(body.inertia_kg_m2, "    [", ", ", "],\n"));
-  add(fields, "inertia_list", numbers_text(body.inertia_kg_m2.diagonal(), ", "));
   add(fields, "gravity_list", numbers_text(body.centre_of_gravity_m, ", "));
   add(fields, "buoyancy", numbers_text(body.centre_of_buoyancy_m));
   add(fields, "buoyancy_list", numbers_text(body.centre_of_buoyancy_m, ", "));
-  add(fields, "weight", body.mass_kg * vehicle::kGravity);
-  add(fields, "buoyant_force", body.mass_kg * vehicle::kGravity + body.net_buoyancy_n);
-  add(fields, "net_buoyancy", body.net_buoyancy_n);
-  add(fields, "thruster_count", std::to_string(vehicle.thrusters.size()));
+  add(fields, "weight", body.mass_kg * simulator::kGravity);
+  add(fields, "buoyant_force", body.mass_kg * simulator::kGravity + body.net_buoyancy_n);
   const Eigen::MatrixXd arms = thruster_matrix(vehicle);
   add(fields, "arms_m", rows_text(arms, "  ", " ", ";\n"));
   add(fields, "arms_py", rows_text(arms, "    [", ", ", "],\n"));
-  add(fields, "arms_list", rows_text(arms, "           ", ", ", ",\n"));
 }
 
 }  // namespace
 
 Fields vehicle_fields(const IdentifiedVehicle& vehicle, const std::string& source) {
-  const vehicle::VehicleParameters& body = vehicle.body;
-  const vehicle::Vector6& linear = body.linear_damping;
-  const vehicle::Vector6& quadratic = body.quadratic_damping;
-  const double displaced = body.mass_kg + body.net_buoyancy_n / vehicle::kGravity;
+  const simulator::VehicleParameters& body = vehicle.body;
+  const simulator::Vector6& linear = body.linear_damping;
+  const simulator::Vector6& quadratic = body.quadratic_damping;
+  const double displaced = body.mass_kg + body.net_buoyancy_n / simulator::kGravity;
   Fields fields;
   add(fields, "source", comment_text(source));
   add(fields, "rest", comment_text(vehicle.rest));
@@ -262,16 +237,12 @@ Fields vehicle_fields(const IdentifiedVehicle& vehicle, const std::string& sourc
   add(fields, "mean_added", body.added_mass.diagonal().head<3>().mean());
   add(fields, "added_m", rows_text(body.added_mass, "  ", " ", ";\n"));
   add(fields, "added_py", rows_text(body.added_mass, "    [", ", ", "],\n"));
-  add(fields, "minus_added_list", numbers_text((-body.added_mass.diagonal()).eval(), ", "));
   add(fields, "damping_sdf", damping_sdf(body));
   add(fields, "linear", numbers_text(linear));
   add(fields, "quadratic", numbers_text(quadratic));
   add(fields, "linear_list", numbers_text(linear, ", "));
   add(fields, "quadratic_list", numbers_text(quadratic, ", "));
-  add(fields, "minus_linear_list", numbers_text((-linear).eval(), ", "));
-  add(fields, "minus_quadratic_list", numbers_text((-quadratic).eval(), ", "));
   add_lists(vehicle, fields);
-  add_orca(vehicle, fields);
   add(fields, "minus_linear", numbers_text((-linear).eval()));
   add(fields, "minus_quadratic", numbers_text((-quadratic).eval()));
   return fields;

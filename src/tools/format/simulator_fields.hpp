@@ -7,7 +7,7 @@
 #include <string>
 
 #include "format/identified_vehicle.hpp"
-#include "vehicle/parameters.hpp"
+#include "simulator/parameters.hpp"
 
 namespace kelpie::format {
 

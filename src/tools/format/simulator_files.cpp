@@ -6,8 +6,8 @@
 
 #include "format/parameters.hpp"
 #include "format/simulator_fields.hpp"
-#include "vehicle/parameters.hpp"
-#include "vehicle/vehicle_text.hpp"
+#include "simulator/parameters.hpp"
+#include "simulator/vehicle_text.hpp"
 
 namespace kelpie::format {
 namespace {
@@ -212,7 +212,7 @@ std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& so
                                vehicle.constant_force(0), vehicle.constant_force(1),
                                vehicle.constant_force(5))
                  : "") +
-         vehicle::vehicle_text(vehicle.body);
+         simulator::vehicle_text(vehicle.body);
 }
 
 }  // namespace kelpie::format

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/seconds.hpp"
+#include "health/effect_factors.hpp"
 #include "kelpie/core/error.hpp"
-#include "motion/effect_factors.hpp"
 #include "motion/states.hpp"
 
 namespace kelpie::health {

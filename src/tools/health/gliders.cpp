@@ -14,9 +14,9 @@
 #include "core/quantile.hpp"
 #include "core/seconds.hpp"
 #include "core/text.hpp"
+#include "health/glide_fit.hpp"
 #include "health/tuning.hpp"
 #include "kelpie/core/error.hpp"
-#include "motion/glide_fit.hpp"
 #include "study/metrics.hpp"
 
 namespace kelpie::health {

@@ -8,14 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "jobs/journal.hpp"
-
 namespace kelpie::jobs {
 
-/// A piece of work with a result that depends on the task alone, so that any process can run it.
+/// A piece of work.
 struct Job {
-  std::string key;       ///< unique name in the list
-  std::string task;      ///< description of the work; mostly JSON
   double cost = 1.0;     ///< > 0: estimated amount of work, in any unit
   std::size_t kind = 0;  ///< estimates are comparable among jobs of a kind, rough between kinds
 };
@@ -23,30 +19,20 @@ struct Job {
 /// Progress report of a job, 0 to 1. False: the job has to end, the result is not needed.
 using Advance = std::function<bool(double share)>;
 
-/// Does a job and returns the result: JSON in one line where several processes work together.
-/// Called by any thread of any process, by several threads at once.
-using Work = std::function<std::string(const Job& job, const Advance& advance)>;
+/// Does jobs[i] and returns the result. Called by several threads at once.
+using Work = std::function<std::string(std::size_t i, const Advance& advance)>;
 
 /// Arguments of Executor::run().
 struct Run {
   std::span<const Job> jobs{};
   Work work;
-  /// Takes the result of jobs[i]. Called in the process that leads, one call at a time, in any
-  /// order. Results of other processes arrive when all processes have ended their work.
+  /// Takes the result of jobs[i]. One call at a time, in any order.
   std::function<void(std::size_t i, std::string result)> done{};
-  /// Called now and then, one call at a time, with the share of finished work (with several
-  /// processes: of started work). False stops the run in every process.
+  /// Called now and then, one call at a time, with the share of finished work. False stops the run.
   std::function<bool(double share)> keep_going = [](double) { return true; };
-  /// Text about the origin of the jobs; must be equal in all processes.
-  std::string identity{};
-  /// Journal of the results, in a folder visible to all processes. With several processes, each
-  /// process except the leading process keeps results in a file beside the journal (rank_journal).
-  JournalPlace journal{};
 };
 
-/// Runs jobs on threads of a process, or in several processes on one or many machines. All
-/// processes of a group call run() in the same order; the leading process has the jobs and takes
-/// the results.
+/// Runs jobs.
 class Executor {
  public:
   Executor() = default;
@@ -54,15 +40,9 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  /// Whether this process leads. A process that does not lead prints nothing, writes no result
-  /// files, and calls run() without `jobs` and `done`.
-  virtual bool leads() const = 0;
-  /// Number of jobs that run at a time, in all processes.
-  virtual std::size_t workers() const = 0;
-
-  /// Runs the jobs, the costly first; a free worker takes the next job. Returns false if the run
+  /// Runs the jobs, the costly first; a free thread takes the next job. Returns false if the run
   /// was stopped before the last result. An exception of a job or of `done` ends the run and is
-  /// rethrown in the leading process.
+  /// rethrown.
   virtual bool run(const Run& run) = 0;
 };
 

@@ -25,7 +25,6 @@ constexpr int kJournalVersion = 1;
 constexpr std::string_view kSumBegin = R"({"crc32":")";
 constexpr std::string_view kSumEnd = R"(",)";
 constexpr std::size_t kSumDigits = 8;
-constexpr std::string_view kRankMark = ".rank-";
 
 std::string checksum(std::string_view text) {
   return fmt::format("{:08x}", file::crc32_of(std::as_bytes(std::span(text))));
@@ -91,7 +90,6 @@ Journal::Journal(std::filesystem::path file, std::string_view kind, const Header
   if (size_ == 0) {
     append(header_line(kind, header));
   }
-  absorb_ranks(kind, header);
 }
 
 Journal::~Journal() {
@@ -196,12 +194,6 @@ std::string JournalReader::result(const std::string& key) const {
   return file::one_line(Json::parse(text).at("result"));
 }
 
-void JournalReader::for_each_key(const std::function<void(const std::string&)>& visit) const {
-  for (const auto& [key, line] : places_) {
-    visit(Json::parse(key).get<std::string>());
-  }
-}
-
 void Journal::add(const std::string& key, std::string_view result) {
   std::string name = file::one_line(key);
   const Line line = append(with_checksum(fmt::format(R"("key":{},"result":{}}})", name, result)));
@@ -209,33 +201,6 @@ void Journal::add(const std::string& key, std::string_view result) {
   is_on_disk_ = false;
   if (std::chrono::steady_clock::now() - on_disk_ >= kTuning.sync_period) {
     put_on_disk();
-  }
-}
-
-// Files in use by another process are left to it.
-void Journal::absorb_ranks(std::string_view kind, const Header& header) {
-  const std::string begin = file_.stem().string() + std::string(kRankMark);
-  std::vector<std::filesystem::path> left;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_of(file_))) {
-    if (entry.path().filename().string().starts_with(begin) &&
-        entry.path().extension() == file_.extension()) {
-      left.push_back(entry.path());
-    }
-  }
-  std::ranges::sort(left);
-  for (const std::filesystem::path& file : left) {
-    const file::Descriptor taken(file, O_RDWR);
-    if (!taken.is_open() || !taken.lock(LOCK_EX | LOCK_NB)) {
-      continue;
-    }
-    const JournalReader other(file, kind, header);
-    other.for_each_key([&](const std::string& key) {
-      if (!has(key)) {
-        add(key, other.result(key));
-      }
-    });
-    put_on_disk();
-    std::filesystem::remove(file);
   }
 }
 
@@ -261,11 +226,6 @@ JournalReader::Line Journal::append(const std::string& line) {
 
 void JournalReader::refuse(std::size_t line, std::string_view field, const std::string& why) const {
   throw InputError({.file = file_.string(), .line = line, .field = std::string(field)}, why);
-}
-
-std::filesystem::path rank_journal(const std::filesystem::path& journal, std::size_t rank) {
-  return journal.parent_path() / fmt::format("{}{}{}{}", journal.stem().string(), kRankMark, rank,
-                                             journal.extension().string());
 }
 
 }  // namespace kelpie::jobs

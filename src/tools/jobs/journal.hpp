@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -18,13 +17,6 @@ namespace kelpie::jobs {
 
 /// Names and values common to the results of a journal.
 using JournalHeader = std::vector<std::pair<std::string, std::string>>;
-
-/// A journal's file, and the required kind and header of the file.
-struct JournalPlace {
-  std::filesystem::path file{};
-  std::string kind{};
-  JournalHeader header{};
-};
 
 /// A journal of any process, opened for reading. The file has JSON lines, each with a checksum of
 /// the rest of the line: first a header, then a line per result. Broken lines at the end, as left
@@ -44,8 +36,6 @@ class JournalReader {
   /// Reads the result of a key from disk. Requires has(key). Throws Failure if the line cannot be
   /// read.
   std::string result(const std::string& key) const;
-  /// Calls `visit` with every key, in any order.
-  void for_each_key(const std::function<void(const std::string& key)>& visit) const;
 
   std::size_t size() const { return places_.size(); }  ///< number of keys
   const std::filesystem::path& file() const { return file_; }
@@ -80,12 +70,10 @@ class JournalReader {
 /// add() within half a minute.
 class Journal : public JournalReader {
  public:
-  /// Opens or begins the journal (folders are made). Broken lines at the end are cut off. Journals
-  /// of ranks of a killed run beside the file (rank_journal) are added and removed. Throws as
-  /// JournalReader does; InputError if another process has the journal open for appending; Failure
-  /// if the file cannot be written.
+  /// Opens or begins the journal (folders are made). Broken lines at the end are cut off. Throws
+  /// as JournalReader does; InputError if another process has the journal open for appending;
+  /// Failure if the file cannot be written.
   Journal(std::filesystem::path file, std::string_view kind, const Header& header);
-  explicit Journal(const JournalPlace& place) : Journal(place.file, place.kind, place.header) {}
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -98,13 +86,9 @@ class Journal : public JournalReader {
   void take() const;
   Line append(const std::string& line);
   void put_on_disk();
-  void absorb_ranks(std::string_view kind, const Header& header);
 
   bool is_on_disk_ = true;
   std::chrono::steady_clock::time_point on_disk_ = std::chrono::steady_clock::now();
 };
-
-/// The file in which rank `rank` keeps its results: journal.rank-3.jsonl beside journal.jsonl.
-std::filesystem::path rank_journal(const std::filesystem::path& journal, std::size_t rank);
 
 }  // namespace kelpie::jobs

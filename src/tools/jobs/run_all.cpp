@@ -39,4 +39,20 @@ void run_all(std::size_t count, std::size_t threads, const std::function<void(st
   }
 }
 
+bool run_while(const std::function<bool(double)>& keep_going, std::size_t count,
+               std::size_t threads, const std::function<void(std::size_t)>& job) {
+  std::atomic<bool> stopped{false};
+  std::mutex mutex;
+  std::size_t done = 0;
+  run_all(count, threads, [&](std::size_t i) {
+    if (stopped) {
+      return;
+    }
+    job(i);
+    const std::scoped_lock lock(mutex);
+    stopped = !keep_going(static_cast<double>(++done) / static_cast<double>(count)) || stopped;
+  });
+  return !stopped;
+}
+
 }  // namespace kelpie::jobs

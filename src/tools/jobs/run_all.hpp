@@ -11,4 +11,10 @@ namespace kelpie::jobs {
 /// exception is rethrown when all threads have ended.
 void run_all(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& job);
 
+/// The same until keep_going(share), called by one thread at a time after each job with the
+/// finished share, returns false; then no further job is started. Returns whether all jobs were
+/// done.
+bool run_while(const std::function<bool(double share)>& keep_going, std::size_t count,
+               std::size_t threads, const std::function<void(std::size_t)>& job);
+
 }  // namespace kelpie::jobs

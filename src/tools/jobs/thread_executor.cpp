@@ -46,9 +46,6 @@ class ThreadExecutor final : public Executor {
   explicit ThreadExecutor(std::size_t threads)
       : threads_(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads) {}
 
-  bool leads() const override { return true; }
-  std::size_t workers() const override { return threads_; }
-
   bool run(const Run& run) override {
     const std::vector<std::size_t> order = costly_first(run.jobs);
     Progress progress(run);
@@ -58,8 +55,7 @@ class ThreadExecutor final : public Executor {
       }
       const std::size_t i = order[place];
       try {
-        progress.finish(
-            i, run.work(run.jobs[i], [&](double share) { return progress.advance(i, share); }));
+        progress.finish(i, run.work(i, [&](double share) { return progress.advance(i, share); }));
       } catch (...) {
         progress.stop();  // or the other threads would finish their long jobs for nothing
         throw;

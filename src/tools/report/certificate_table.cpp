@@ -29,16 +29,16 @@ std::string r2_text(const study::DrivenHorizon& horizon, const std::array<bool, 
     }
   }
   const auto count = std::ranges::count(free, true);
-  return count <= 3 ? text : one_r2(horizon.r2[least]) + " " + vehicle::axis_text(least);
+  return count <= 3 ? text : one_r2(horizon.r2[least]) + " " + simulator::axis_text(least);
 }
 
 std::string step_text(double step_s) {
   return fmt::format("{:.4g}", 1e3 * step_s);
 }
 
-std::string bound_text(const vehicle::StepLimit& limit) {
-  return limit.term ? fmt::format("{}, {}", vehicle::term_text(*limit.term),
-                                  vehicle::axis_text(limit.axis))
+std::string bound_text(const simulator::StepLimit& limit) {
+  return limit.term ? fmt::format("{}, {}", simulator::term_text(*limit.term),
+                                  simulator::axis_text(limit.axis))
                     : "–";
 }
 
@@ -50,15 +50,15 @@ chart::TextTable certificate_view(const study::CertificateList& list) {
                           "largest stable\nstep/ms", "bounded by"},
                          {}};
   for (const study::Certificate& certificate : list.engines) {
-    const vehicle::StepLimit& limit = certificate.limit;
+    const simulator::StepLimit& limit = certificate.limit;
     std::vector<std::string> row{std::string(certificate.engine.name),
                                  step_text(certificate.engine.step_s)};
     for (const study::DrivenHorizon& horizon : certificate.horizons) {
       row.push_back(r2_text(horizon, list.free));
     }
     row.push_back(!limit.largest_s ? "none"
-                  : *limit.largest_s >= vehicle::StepLimit::kMostS
-                      ? "above " + step_text(vehicle::StepLimit::kMostS)
+                  : *limit.largest_s >= simulator::StepLimit::kMostS
+                      ? "above " + step_text(simulator::StepLimit::kMostS)
                       : step_text(*limit.largest_s));
     row.push_back(bound_text(limit));
     table.rows.push_back(row);
@@ -66,7 +66,7 @@ chart::TextTable certificate_view(const study::CertificateList& list) {
   std::vector<std::string> axes;
   for (std::size_t axis = 0; axis < list.free.size(); ++axis) {
     if (list.free[axis]) {
-      axes.emplace_back(vehicle::axis_text(axis));
+      axes.emplace_back(simulator::axis_text(axis));
     }
   }
   table.left = {0, 6};
@@ -80,14 +80,15 @@ chart::TextTable certificate_view(const study::CertificateList& list) {
 std::vector<std::string> certificate_remarks(const study::CertificateList& list) {
   std::vector<std::string> remarks;
   for (const study::Certificate& certificate : list.engines) {
-    const vehicle::StepLimit& limit = certificate.limit;
+    const simulator::StepLimit& limit = certificate.limit;
     if (!limit.stable) {
       remarks.push_back(fmt::format(
           "{} ({}) is unstable at its step of {} ms: {}{}.", certificate.engine.name,
           certificate.engine.title, step_text(certificate.engine.step_s),
-          limit.term ? fmt::format("to blame: the {} on the axis of {}, ",
-                                   vehicle::term_text(*limit.term), vehicle::axis_text(limit.axis))
-                     : std::string(),
+          limit.term
+              ? fmt::format("to blame: the {} on the axis of {}, ",
+                            simulator::term_text(*limit.term), simulator::axis_text(limit.axis))
+              : std::string(),
           limit.largest_s ? "and steps up to " + step_text(*limit.largest_s) + " ms are stable"
                           : std::string("and no step is stable")));
     }

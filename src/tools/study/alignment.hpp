@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
 

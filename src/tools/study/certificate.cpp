@@ -11,9 +11,9 @@
 namespace kelpie::study {
 namespace {
 
-using vehicle::EngineRun;
-using vehicle::EngineState;
-using vehicle::Vector6;
+using simulator::EngineRun;
+using simulator::EngineState;
+using simulator::Vector6;
 
 constexpr double kWild = 1e3;  // m/s, rad/s: a rollout beyond has failed
 
@@ -118,11 +118,12 @@ std::vector<DrivenHorizon> driven_horizons(const EngineRun& run, const RecordedD
 
 }  // namespace
 
-CertificateList certify(std::span<const vehicle::Engine> engines, const vehicle::EngineBody& body,
-                        const RecordedDrive& drive, const DriveStudy& study) {
+CertificateList certify(std::span<const simulator::Engine> engines,
+                        const simulator::EngineBody& body, const RecordedDrive& drive,
+                        const DriveStudy& study) {
   CertificateList list{.rows = drive.rows_text, .free = body.free};
   const std::vector<EngineState> points = operating_points(drive);
-  for (const vehicle::Engine& engine : engines) {
+  for (const simulator::Engine& engine : engines) {
     list.engines.push_back(
         {.engine = engine,
          .horizons = driven_horizons(EngineRun(engine, body, engine.step_s), drive, study),

@@ -8,19 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "vehicle/engine.hpp"
-#include "vehicle/stability.hpp"
+#include "simulator/engine.hpp"
+#include "simulator/stability.hpp"
 
 namespace kelpie::study {
 
 /// Rows of a log for the engines of simulators: FRD, SI.
 struct RecordedDrive {
   std::vector<double> times_s{};
-  std::vector<vehicle::Vector6> velocities{};   ///< measured; 0 on axes that don't move
-  std::vector<Eigen::Quaterniond> attitudes{};  ///< body to NED; the heading doesn't matter
-  std::vector<vehicle::Vector6> forces{};       ///< of the thrusters, about the origin
-  std::vector<std::size_t> starts{};            ///< first row of each stretch without a gap
-  std::string rows_text{};                      ///< "held-out rows"
+  std::vector<simulator::Vector6> velocities{};  ///< measured; 0 on axes that don't move
+  std::vector<Eigen::Quaterniond> attitudes{};   ///< body to NED; the heading doesn't matter
+  std::vector<simulator::Vector6> forces{};      ///< of the thrusters, about the origin
+  std::vector<std::size_t> starts{};             ///< first row of each stretch without a gap
+  std::string rows_text{};                       ///< "held-out rows"
 
   std::size_t rows() const { return times_s.size(); }
   std::size_t end_of(std::size_t stretch) const {  ///< The row after the last.
@@ -37,9 +37,9 @@ struct DrivenHorizon {
 
 /// The log driven again by an engine, and what the engine's step does to the vehicle.
 struct Certificate {
-  vehicle::Engine engine;
+  simulator::Engine engine;
   std::vector<DrivenHorizon> horizons{};
-  vehicle::StepLimit limit{};
+  simulator::StepLimit limit{};
 };
 
 /// The certificates of one identified vehicle.
@@ -59,7 +59,8 @@ struct DriveStudy {
 /// attitudes, with forces linear between rows; finds the largest stable steps (step_limit()), at
 /// rest and at the rows where each axis is fastest. Cost: per engine the time of the log /
 /// start_every_s × 40 s / step. Allocates.
-CertificateList certify(std::span<const vehicle::Engine> engines, const vehicle::EngineBody& body,
-                        const RecordedDrive& drive, const DriveStudy& study = {});
+CertificateList certify(std::span<const simulator::Engine> engines,
+                        const simulator::EngineBody& body, const RecordedDrive& drive,
+                        const DriveStudy& study = {});
 
 }  // namespace kelpie::study

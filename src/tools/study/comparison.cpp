@@ -149,16 +149,15 @@ struct Heat {
 bool hold_all(const log::Dataset& data, std::vector<Heat> heats, const CompareOptions& options,
               const std::function<bool(double)>& keep_going) {
   std::vector<jobs::Job> list;
-  for (std::size_t i = 0; i < heats.size(); ++i) {
-    const std::string place = std::to_string(i);
-    list.push_back({place, place, cost_of(*heats[i].contender)});
+  for (const Heat& heat : heats) {
+    list.push_back({.cost = cost_of(*heat.contender)});
   }
   return jobs::make_thread_executor(options.threads)
       ->run({
           .jobs = list,
           .work =
-              [&](const jobs::Job& job, const jobs::Advance& advance) {
-                const Heat& heat = heats[std::stoul(job.task)];
+              [&](std::size_t i, const jobs::Advance& advance) {
+                const Heat& heat = heats[i];
                 *heat.contest = hold(data, *heat.split, *heat.contender, advance);
                 return std::string();
               },

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 
 namespace kelpie::study {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
 

@@ -11,7 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/open_loop.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 
 namespace kelpie::study {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "study/result.hpp"
 
 namespace kelpie::study {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "motion/weak_form.hpp"
+#include "identify/weak_form.hpp"
 #include "study/tuning.hpp"
 
 namespace kelpie::study {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "identify/expected_fit.hpp"
+#include "identify/expected_six_axis_fit.hpp"
 #include "kelpie/motion/frame.hpp"
-#include "model/expected_six_axis_fit.hpp"
-#include "motion/expected_fit.hpp"
 #include "study/manoeuvre.hpp"
 
 namespace kelpie::study {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,8 +14,9 @@
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
-#include "motion/tuning.hpp"
+#include "simulator/decomposition.hpp"
 #include "study/tuning.hpp"
+#include "vehicle/tuning.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -40,8 +41,8 @@ Eigen::MatrixXd root_of_errors(const ParameterFit& fit) {
       covariance.col(place) *= most / parameter.error;
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const simulator::SymmetricPairs pairs = simulator::symmetric_pairs(covariance);
+  return pairs.vectors * pairs.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 bool is_size(const FittedParameter& parameter) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/motion/planar_fit.hpp"
+#include "kelpie/identify/planar_fit.hpp"
 #include "study/drivable_vehicle.hpp"
 #include "study/manoeuvre.hpp"
 

@@ -23,35 +23,27 @@ struct EvaluationTask {
 inline constexpr std::string_view kLeastSquares = "least squares";
 inline constexpr std::string_view kMean = "mean";
 
-/// Makes evaluations wherever an executor has them made, and enters them in the journal. A task
-/// goes out as text; every process has the same problem and options.
+/// Makes evaluations by an executor, and enters the results in the journal.
 class Evaluator {
  public:
-  /// `journal`: of the search. `rows_planned`: rows that all tasks together will show to learners,
-  /// for the progress.
+  /// `rows_planned`: rows that all tasks together will show to learners, for the progress.
   Evaluator(const TuneProblem& problem, const ChainSet& chains, const TuneOptions& options,
-            jobs::Executor& executor, jobs::JournalPlace journal, double rows_planned);
+            jobs::Executor& executor, double rows_planned);
 
   /// Makes the evaluations missing in the journal. Throws what a task throws.
   void run(const std::vector<EvaluationTask>& tasks, TuneJournal& journal);
-
-  /// The part of the other processes in one run().
-  void help();
 
   /// Whether the user stopped the search; tasks may then be missing in the journal.
   bool stopped() const { return stopped_; }
 
  private:
-  jobs::Run run_of_all() const;
-  std::string work(const jobs::Job& job, const jobs::Advance& advance) const;
+  std::string work(const EvaluationTask& task, const jobs::Advance& advance) const;
   double rows(const EvaluationTask& task) const;
 
   const TuneProblem& problem_;
   const ChainSet& chains_;
   const TuneOptions& options_;
   jobs::Executor& executor_;
-  jobs::JournalPlace journal_;
-  std::string identity_;
   double rows_planned_;
   double rows_done_ = 0.0;
   bool stopped_ = false;

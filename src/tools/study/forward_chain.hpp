@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "log/dataset.hpp"
 
 namespace kelpie::study {

@@ -9,12 +9,12 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "identify/pose_fit.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/known_roles.hpp"
 #include "log/plausibility.hpp"
-#include "motion/pose_fit.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
 #include "study/metrics.hpp"

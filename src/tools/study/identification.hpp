@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "identify/six_axis_fit.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/core/error.hpp"
-#include "kelpie/model/alignment.hpp"
-#include "kelpie/motion/planar_fit.hpp"
+#include "kelpie/identify/planar_fit.hpp"
 #include "log/dataset.hpp"
-#include "model/six_axis_fit.hpp"
 #include "study/certificate.hpp"
 #include "study/split.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/model/alignment.hpp"
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/settings.hpp"
 #include "log/dataset.hpp"

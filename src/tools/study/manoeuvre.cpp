@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +14,8 @@
 
 #include "core/eigen.hpp"
 #include "core/text.hpp"
-#include "model/six_axis_structure.hpp"
+#include "identify/six_axis_structure.hpp"
+#include "simulator/decomposition.hpp"
 #include "study/tuning.hpp"
 
 namespace kelpie::study {
@@ -168,7 +169,7 @@ PlanarPush::PlanarPush(const PlanarVehicle& vehicle, ThrusterRange range)
   }
   const double arm = forces.row(2).norm() / std::max(forces.topRows(2).norm(), 1e-12);
   forces.row(2) /= std::max(arm, 1e-12);
-  const Eigen::MatrixXd inverse = forces.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = simulator::pseudo_inverse(forces);
   forces_.assign(forces.data(), forces.data() + forces.size());
   inverse_.assign(inverse.data(), inverse.data() + inverse.size());
 }
@@ -202,7 +203,7 @@ SixAxisPush::SixAxisPush(const SixAxisFit& fit, ThrusterRange range, double supp
   Eigen::MatrixXd arms = thruster_arms(fit.thrusters);
   const double arm = arms.bottomRows(3).norm() / std::max(arms.topRows(3).norm(), 1e-12);
   arms.bottomRows(3) /= std::max(arm, 1e-12);
-  const Eigen::MatrixXd inverse = arms.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = simulator::pseudo_inverse(arms);
   inverse_.assign(inverse.data(), inverse.data() + inverse.size());
   const Eigen::VectorXd reached = (arms * inverse).diagonal();
   reached_.assign(reached.begin(), reached.end());

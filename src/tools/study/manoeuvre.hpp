@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "identify/six_axis_fit.hpp"
 #include "kelpie/core/random.hpp"
-#include "kelpie/motion/planar_fit.hpp"
-#include "model/six_axis_fit.hpp"
+#include "kelpie/identify/planar_fit.hpp"
 
 namespace kelpie::study {
 

@@ -9,8 +9,4 @@ namespace kelpie::study {
 /// values, or with equal values of `truth`. Requires equal sizes.
 double r_squared(std::span<const double> truth, std::span<const double> predicted);
 
-/// The exponent p of y ≈ a xᵖ, by least squares on the logarithms. NaN with fewer than two
-/// different x. Requires positive values and equal sizes.
-double power_exponent(std::span<const double> x, std::span<const double> y);
-
 }  // namespace kelpie::study

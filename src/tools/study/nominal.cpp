@@ -13,10 +13,11 @@
 #include "learner/triangular_fit.hpp"
 #include "model/snapshot.hpp"
 #include "motion/states.hpp"
+#include "simulator/decomposition.hpp"
+#include "simulator/dynamics.hpp"
 #include "study/six_axes.hpp"
 #include "study/tuning.hpp"
 #include "svr/function_mix.hpp"
-#include "vehicle/dynamics.hpp"
 
 namespace kelpie::study {
 namespace {
@@ -39,10 +40,10 @@ std::vector<std::optional<std::size_t>> axes_of_targets(const log::Dataset& data
 // The accelerations of a vehicle file on the inputs of a log.
 class VehicleOnInputs {
  public:
-  VehicleOnInputs(const vehicle::VehicleParameters& vehicle, const log::Dataset& data, Frame frame,
-                  double neutral)
+  VehicleOnInputs(const simulator::VehicleParameters& vehicle, const log::Dataset& data,
+                  Frame frame, double neutral)
       : vehicle_(vehicle),
-        dynamics_(vehicle::make_plant(vehicle, vehicle::Configuration{})),
+        dynamics_(simulator::make_plant(vehicle, simulator::Configuration{})),
         attitude_(find_attitude(data.input_names)),
         frame_(frame),
         neutral_(neutral) {
@@ -50,7 +51,7 @@ class VehicleOnInputs {
       axes_.push_back(velocity_axis(name));
     }
     std::vector<std::string> names;
-    for (const vehicle::Thruster& thruster : vehicle.thrusters) {
+    for (const simulator::Thruster& thruster : vehicle.thrusters) {
       names.push_back(thruster.name);
       inputs_.push_back(data.find_input(thruster.name));
     }
@@ -62,17 +63,16 @@ class VehicleOnInputs {
   const Attitude& attitude() const { return attitude_; }
 
   // By body axis, in the frame of the log.
-  vehicle::Vector6 acceleration(std::span<const double> x) const {
-    vehicle::Vector6 velocity = vehicle::Vector6::Zero();
+  simulator::Vector6 acceleration(std::span<const double> x) const {
+    simulator::Vector6 velocity = simulator::Vector6::Zero();
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (axes_[i]) {
         velocity(static_cast<Eigen::Index>(*axes_[i])) = sign_in_frd(frame_, *axes_[i]) * x[i];
       }
     }
     const auto [forward, right, down] = down_of(attitude_, x, frame_);
-    const auto attitude = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(forward, right, down),
-                                                             Eigen::Vector3d::UnitZ());
-    vehicle::Vector6 result = dynamics_.acceleration(attitude, velocity, rotor_speeds(x));
+    const Eigen::Quaterniond attitude = simulator::attitude_of({forward, right, down});
+    simulator::Vector6 result = dynamics_.acceleration(attitude, velocity, rotor_speeds(x));
     for (Eigen::Index axis = 0; axis < result.size(); ++axis) {
       result(axis) *= sign_in_frd(frame_, static_cast<std::size_t>(axis));
     }
@@ -80,22 +80,22 @@ class VehicleOnInputs {
   }
 
  private:
-  vehicle::RotorSpeeds rotor_speeds(std::span<const double> x) const {
-    vehicle::RotorSpeeds speeds =
-        vehicle::RotorSpeeds::Zero(static_cast<Eigen::Index>(inputs_.size()));
+  simulator::RotorSpeeds rotor_speeds(std::span<const double> x) const {
+    simulator::RotorSpeeds speeds =
+        simulator::RotorSpeeds::Zero(static_cast<Eigen::Index>(inputs_.size()));
     for (std::size_t k = 0; k < inputs_.size(); ++k) {
       if (inputs_[k]) {
-        const vehicle::Thruster& thruster = vehicle_.thrusters[k];
+        const simulator::Thruster& thruster = vehicle_.thrusters[k];
         const double command =
             thruster.max_speed_rps * command_share(vehicle_, k, x[*inputs_[k]], neutral_);
-        speeds(static_cast<Eigen::Index>(k)) = vehicle::speed_for_command(thruster, command);
+        speeds(static_cast<Eigen::Index>(k)) = simulator::speed_for_command(thruster, command);
       }
     }
     return speeds;
   }
 
-  const vehicle::VehicleParameters& vehicle_;
-  vehicle::Dynamics dynamics_;
+  const simulator::VehicleParameters& vehicle_;
+  simulator::Dynamics dynamics_;
   Attitude attitude_;
   Frame frame_;
   double neutral_;
@@ -145,7 +145,7 @@ Nominal nominal_of(const TrainedModel& model, std::span<const std::string> targe
   return nominal;
 }
 
-Nominal nominal_of(const vehicle::VehicleParameters& vehicle, const log::Dataset& data,
+Nominal nominal_of(const simulator::VehicleParameters& vehicle, const log::Dataset& data,
                    const std::string& states, const TermSet& terms, Frame frame, double neutral) {
   const VehicleOnInputs nominal(vehicle, data, frame, neutral);
   const std::vector<std::optional<std::size_t>> axes = axes_of_targets(data, states);
@@ -162,7 +162,7 @@ Nominal nominal_of(const vehicle::VehicleParameters& vehicle, const log::Dataset
       x[i] = data.input(row)[i];
     }
     terms.evaluate(x, std::span(phi).first(terms.size()));
-    const vehicle::Vector6 all = nominal.acceleration(x);
+    const simulator::Vector6 all = nominal.acceleration(x);
     std::ranges::transform(axes, y.begin(), [&](const std::optional<std::size_t>& axis) {
       return axis ? all(static_cast<Eigen::Index>(*axis)) : 0.0;
     });

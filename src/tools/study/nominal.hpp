@@ -6,13 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/frame.hpp"
 #include "kelpie/motion/term_set.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "log/dataset.hpp"
-#include "vehicle/parameters.hpp"
+#include "simulator/parameters.hpp"
 
 namespace kelpie::study {
 
@@ -32,7 +32,7 @@ Nominal nominal_of(const TrainedModel& model, std::span<const std::string> targe
 /// model. `neutral`: pulse at rest in the log, 1500, or 0 where it has been subtracted. Thrusters
 /// that no input names stand still; states that are no velocity of the body get an empty list.
 /// Throws InputError where the log names no thruster of the vehicle.
-Nominal nominal_of(const vehicle::VehicleParameters& vehicle, const log::Dataset& data,
+Nominal nominal_of(const simulator::VehicleParameters& vehicle, const log::Dataset& data,
                    const std::string& states, const TermSet& terms, Frame frame, double neutral);
 
 /// Gives every axis of a new model its coefficients.

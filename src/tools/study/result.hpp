@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
-#include "kelpie/model/alignment.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/alignment/alignment.hpp"
+#include "kelpie/svr/regressor.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "study/baselines.hpp"
 #include "study/coverage.hpp"
 

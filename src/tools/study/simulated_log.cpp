@@ -8,7 +8,7 @@ namespace kelpie::study {
 namespace {
 
 // Columns of a row, in the order of six_axis_names().
-std::vector<double> cells_of(const vehicle::SixAxisRow& row, bool has_battery) {
+std::vector<double> cells_of(const simulator::SixAxisRow& row, bool has_battery) {
   std::vector<double> cells{row.t_s, static_cast<double>(row.configuration)};
   cells.insert(cells.end(), row.velocity.begin(), row.velocity.end());
   cells.insert(cells.end(), row.attitude_rad.begin(), row.attitude_rad.end());
@@ -21,16 +21,16 @@ std::vector<double> cells_of(const vehicle::SixAxisRow& row, bool has_battery) {
   return cells;
 }
 
-std::string unit_of(vehicle::CommandUnit unit) {
+std::string unit_of(simulator::CommandUnit unit) {
   constexpr std::array kUnits{" [rev/s]", "", " [us]"};
   return kUnits.at(static_cast<std::size_t>(unit));
 }
 
-std::vector<std::string> six_axis_names(const vehicle::VehicleParameters& vehicle) {
+std::vector<std::string> six_axis_names(const simulator::VehicleParameters& vehicle) {
   std::vector<std::string> names{"t [s]",     "conf",        "u [m/s]",   "v [m/s]",
                                  "w [m/s]",   "p [rad/s]",   "q [rad/s]", "r [rad/s]",
                                  "phi [rad]", "theta [rad]", "psi [rad]"};
-  for (const vehicle::Thruster& thruster : vehicle.thrusters) {
+  for (const simulator::Thruster& thruster : vehicle.thrusters) {
     names.push_back(thruster.name + unit_of(vehicle.command_unit));
   }
   if (vehicle.battery.nominal_v > 0.0) {
@@ -47,13 +47,13 @@ std::vector<std::string> six_axis_names(const vehicle::VehicleParameters& vehicl
 
 }  // namespace
 
-log::Table log_table(std::span<const vehicle::LogRow> rows, const std::string& source) {
+log::Table log_table(std::span<const simulator::LogRow> rows, const std::string& source) {
   log::Table table;
   table.source = source;
   table.names = {"t",   "conf", "u",    "v",    "r",         "th1",       "th2",
                  "th3", "udot", "vdot", "rdot", "udot_true", "vdot_true", "rdot_true"};
   table.columns.resize(table.names.size());
-  for (const vehicle::LogRow& row : rows) {
+  for (const simulator::LogRow& row : rows) {
     std::size_t column = 0;
     table.columns[column++].push_back(row.t_s);
     table.columns[column++].push_back(static_cast<double>(row.configuration));
@@ -68,13 +68,13 @@ log::Table log_table(std::span<const vehicle::LogRow> rows, const std::string& s
   return table;
 }
 
-log::Table log_table(std::span<const vehicle::SixAxisRow> rows,
-                     const vehicle::VehicleParameters& vehicle, const std::string& source) {
+log::Table log_table(std::span<const simulator::SixAxisRow> rows,
+                     const simulator::VehicleParameters& vehicle, const std::string& source) {
   log::Table table;
   table.source = source;
   table.names = six_axis_names(vehicle);
   table.columns.resize(table.names.size());
-  for (const vehicle::SixAxisRow& row : rows) {
+  for (const simulator::SixAxisRow& row : rows) {
     const std::vector<double> cells = cells_of(row, vehicle.battery.nominal_v > 0.0);
     for (std::size_t column = 0; column < cells.size(); ++column) {
       table.columns[column].push_back(cells[column]);

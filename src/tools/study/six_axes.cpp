@@ -12,17 +12,17 @@
 #include "kelpie/core/error.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
+#include "simulator/dynamics.hpp"
 #include "study/tuning.hpp"
-#include "vehicle/dynamics.hpp"
 
 namespace kelpie::study {
 namespace {
 
 constexpr double kPulsePerShareUs = 400.0;  // ArduSub: 1100 to 1900 µs
 
-std::vector<PlacedThruster> placed_thrusters(const vehicle::VehicleParameters& vehicle) {
+std::vector<PlacedThruster> placed_thrusters(const simulator::VehicleParameters& vehicle) {
   std::vector<PlacedThruster> thrusters;
-  for (const vehicle::Thruster& thruster : vehicle.thrusters) {
+  for (const simulator::Thruster& thruster : vehicle.thrusters) {
     const Eigen::Vector3d& p = thruster.position_m;
     const Eigen::Vector3d& d = thruster.direction;
     thrusters.push_back({.name = thruster.name,
@@ -103,34 +103,34 @@ std::array<double, 3> down_of(const Attitude& attitude, std::span<const double> 
   return {-std::sin(pitch), std::cos(pitch) * std::sin(roll), std::cos(pitch) * std::cos(roll)};
 }
 
-double command_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
+double command_share(const simulator::VehicleParameters& vehicle, std::size_t thruster,
                      double command, double neutral) {
   switch (vehicle.command_unit) {
-    case vehicle::CommandUnit::pwm:
+    case simulator::CommandUnit::pwm:
       return (command - neutral) / kPulsePerShareUs;
-    case vehicle::CommandUnit::share:
+    case simulator::CommandUnit::share:
       return command;
-    case vehicle::CommandUnit::speed:
+    case simulator::CommandUnit::speed:
       break;
   }
   return command / vehicle.thrusters[thruster].max_speed_rps;
 }
 
-double command_for_share(const vehicle::VehicleParameters& vehicle, std::size_t thruster,
+double command_for_share(const simulator::VehicleParameters& vehicle, std::size_t thruster,
                          double share, double neutral) {
   switch (vehicle.command_unit) {
-    case vehicle::CommandUnit::pwm:
+    case simulator::CommandUnit::pwm:
       return neutral + kPulsePerShareUs * share;
-    case vehicle::CommandUnit::share:
+    case simulator::CommandUnit::share:
       return share;
-    case vehicle::CommandUnit::speed:
+    case simulator::CommandUnit::speed:
       break;
   }
   return share * vehicle.thrusters[thruster].max_speed_rps;
 }
 
 std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const std::string& states,
-                                               const vehicle::VehicleParameters& vehicle,
+                                               const simulator::VehicleParameters& vehicle,
                                                const std::string& volts, std::string& why) {
   SixAxisColumns columns;
   why = missing_velocity(data, find_states(states, data.input_names, data.target_names.size()),
@@ -139,7 +139,7 @@ std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const s
   if (!columns.attitude.quaternion && !(columns.attitude.roll && columns.attitude.pitch)) {
     why = "no roll and pitch";
   }
-  for (const vehicle::Thruster& thruster : vehicle.thrusters) {
+  for (const simulator::Thruster& thruster : vehicle.thrusters) {
     const std::optional<std::size_t> found = data.find_input(thruster.name);
     if (!found) {
       why = "no command of the vehicle file's thruster '" + thruster.name + "'";
@@ -154,8 +154,9 @@ std::optional<SixAxisColumns> six_axis_columns(const log::Dataset& data, const s
 }
 
 SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_t>& rows,
-                          const SixAxisColumns& columns, const vehicle::VehicleParameters& vehicle,
-                          Frame frame, double neutral) {
+                          const SixAxisColumns& columns,
+                          const simulator::VehicleParameters& vehicle, Frame frame,
+                          double neutral) {
   SixAxisRows six;
   six.starts.clear();
   six.thrusters = placed_thrusters(vehicle);
@@ -183,12 +184,12 @@ SixAxisRows six_axis_rows(const log::Dataset& data, const std::vector<std::size_
   return six;
 }
 
-SixAxisRows six_axis_rows(const std::vector<vehicle::SixAxisRow>& log,
-                          const vehicle::VehicleParameters& vehicle) {
+SixAxisRows six_axis_rows(const std::vector<simulator::SixAxisRow>& log,
+                          const simulator::VehicleParameters& vehicle) {
   SixAxisRows rows{.thrusters = placed_thrusters(vehicle)};
   const bool has_battery = vehicle.battery.nominal_v > 0.0;
   rows.nominal_volts = has_battery ? vehicle.battery.nominal_v : 1.0;
-  for (const vehicle::SixAxisRow& row : log) {
+  for (const simulator::SixAxisRow& row : log) {
     rows.times_s.push_back(row.t_s);
     rows.velocities.insert(rows.velocities.end(), row.velocity.begin(), row.velocity.end());
     const std::array angles{row.attitude_rad(0), row.attitude_rad(1)};
@@ -206,8 +207,8 @@ SixAxisRows six_axis_rows(const std::vector<vehicle::SixAxisRow>& log,
   return rows;
 }
 
-std::vector<double> six_axis_truth(const vehicle::VehicleParameters& vehicle) {
-  const vehicle::Plant plant = vehicle::make_plant(vehicle, vehicle::Configuration{});
+std::vector<double> six_axis_truth(const simulator::VehicleParameters& vehicle) {
+  const simulator::Plant plant = simulator::make_plant(vehicle, simulator::Configuration{});
   std::vector<double> truth;
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     truth.push_back(plant.mass(axis, axis));
@@ -218,7 +219,7 @@ std::vector<double> six_axis_truth(const vehicle::VehicleParameters& vehicle) {
   truth.insert(truth.end(), plant.quadratic_damping.begin(), plant.quadratic_damping.end());
   truth.push_back(plant.net_weight_n);
   truth.insert(truth.end(), plant.weight_moment_nm.begin(), plant.weight_moment_nm.end());
-  for (const vehicle::Thruster& thruster : vehicle.thrusters) {
+  for (const simulator::Thruster& thruster : vehicle.thrusters) {
     const double full = thruster.max_speed_rps * thruster.max_speed_rps;
     truth.push_back(thruster.forward * full);
     truth.push_back(thruster.reverse * full);
@@ -230,7 +231,7 @@ std::vector<double> six_axis_truth(const vehicle::VehicleParameters& vehicle) {
 
 Identification identify_six_axes(const log::Dataset& data, const Split& split,
                                  const SixAxisColumns& columns,
-                                 const vehicle::VehicleParameters& vehicle, Frame frame,
+                                 const simulator::VehicleParameters& vehicle, Frame frame,
                                  double neutral, const KnownThrust& known, std::optional<int> only,
                                  const SixAxisSettings& options) {
   const std::vector<std::size_t> training = training_rows(data, split, only);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "log/dataset.hpp"
 #include "study/result.hpp"
 

@@ -141,7 +141,7 @@ class Search {
         chains_(problem),
         trials_(problem, chains_, journal),
         candidates_(problem.space.candidates(options.seed, options.candidates)),
-        evaluator_(problem, chains_, options, executor, journal.place(), rows_planned()) {
+        evaluator_(problem, chains_, options, executor, rows_planned()) {
     std::vector<std::size_t> all(candidates_.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       all[i] = i;
@@ -335,16 +335,6 @@ TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJour
   problem.validate();
   options.validate();
   return Search(problem, options, journal, executor).run();
-}
-
-void help_to_tune(const TuneProblem& problem, const TuneOptions& options,
-                  const std::filesystem::path& journal, jobs::Executor& executor) {
-  const ChainSet chains(problem);
-  Evaluator evaluator(problem, chains, options, executor,
-                      TuneJournal::place(journal, journal_header(problem, options)), 1.0);
-  for (std::size_t rung = 0; rung < chains.rungs() && !evaluator.stopped(); ++rung) {
-    evaluator.help();
-  }
 }
 
 }  // namespace kelpie::study

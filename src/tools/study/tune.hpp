@@ -87,14 +87,9 @@ struct TuneResult {
 /// `journal` provides and stores evaluations. Ensures: the result depends on problem, candidates,
 /// seed and most_iterations only, not on the processes, nor on the journal's content. A stopped
 /// search returns the best candidates of the last finished rung (on the first rung: so far).
-/// Requires that the executor leads. Throws what TuneProblem::validate(), TuneOptions::validate()
+/// Throws what TuneProblem::validate(), TuneOptions::validate()
 /// and ForwardChain throw.
 TuneResult tune(const TuneProblem& problem, const TuneOptions& options, TuneJournal& journal,
                 jobs::Executor& executor);
-
-/// Does the part of the other processes of the executor, with the same problem, options and file of
-/// the journal.
-void help_to_tune(const TuneProblem& problem, const TuneOptions& options,
-                  const std::filesystem::path& journal, jobs::Executor& executor);
 
 }  // namespace kelpie::study

@@ -31,11 +31,7 @@ std::string score_text(const ChainScore& score) {
 }
 
 TuneJournal::TuneJournal(std::filesystem::path file, const Header& header)
-    : place_(place(std::move(file), header)), journal_(place_) {}
-
-jobs::JournalPlace TuneJournal::place(std::filesystem::path file, Header header) {
-  return {std::move(file), std::string(kJournalFormat), std::move(header)};
-}
+    : journal_(std::move(file), kJournalFormat, header) {}
 
 std::optional<ChainScore> TuneJournal::find(const EvaluationKey& key) const {
   const std::string text = key.text();

@@ -44,12 +44,7 @@ class TuneJournal {
 
   std::size_t size() const { return journal_.size(); }
 
-  /// The place of a search's journal, for jobs::Run.
-  static jobs::JournalPlace place(std::filesystem::path file, Header header);
-  const jobs::JournalPlace& place() const { return place_; }
-
  private:
-  jobs::JournalPlace place_;
   jobs::Journal journal_;
 };
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/learner/regressor.hpp"
 #include "kelpie/model/settings.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "log/dataset.hpp"
 #include "study/forward_chain.hpp"
 #include "study/search_space.hpp"

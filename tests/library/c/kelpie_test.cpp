@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "allocation_count.hpp"
+#include "files/model_block.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
 #include "kelpie/navigation/dead_reckoning.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "model/dynamics_axis.hpp"
-#include "model/model_block.hpp"
 
 namespace kelpie::c_test {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "kelpie/core/error.hpp"
-#include "streams.hpp"
+#include "learner/streams.hpp"
 
 namespace kelpie::adaptive_svr_test {
 namespace {

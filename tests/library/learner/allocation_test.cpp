@@ -13,7 +13,8 @@
 #include "allocation_count.hpp"
 #include "kelpie/learner/recursive_least_squares.hpp"
 #include "learner/adaptive_svr.hpp"
-#include "streams.hpp"
+#include "learner/streams.hpp"
+#include "saved_state.hpp"
 
 namespace kelpie::allocation_test {
 namespace {
@@ -154,11 +155,8 @@ TEST(RealTime, ALoadedLearnerAllocatesNothing) {
   for (std::size_t i = 0; i < 30; ++i) {
     saved.update(stream[i].z, stream[i].y, stream[i].t);
   }
-  Archive saves;
-  saved.visit(saves);
   AdaptiveSvr loaded(2, hard_settings());
-  Archive loads(saves.bytes());
-  loaded.visit(loads);
+  testing::load(loaded, testing::saved(saved));
   const std::size_t before = allocations;
   for (std::size_t i = 30; i < stream.size(); ++i) {
     loaded.update(stream[i].z, stream[i].y, stream[i].t);

@@ -11,7 +11,8 @@
 
 #include "allocation_count.hpp"
 #include "learner/sparse_regression.hpp"
-#include "streams.hpp"
+#include "learner/streams.hpp"
+#include "saved_state.hpp"
 
 namespace kelpie::committee_test {
 namespace {
@@ -179,24 +180,14 @@ TEST(Committee, ItsCopySaysTheSameToTheLastBit) {
 }
 
 TEST(Committee, SavedAndLoadedItGoesOnToTheLastBit) {
-  Committee whole = make();
-  Committee broken = make();
   const std::vector<Sample> first = with_terms(wandering_stream(10, 400));
   std::vector<Sample> stream = with_terms(wandering_stream(11, 400, 0.02, 2, 100.0));
   stream.insert(stream.begin(), first.begin(), first.end());
-  for (std::size_t i = 0; i < stream.size(); ++i) {
-    if (i % 37 == 5) {
-      Archive saved;
-      broken.visit(saved);
-      broken = make();
-      Archive loaded(saved.bytes());
-      broken.visit(loaded);
-      loaded.finish();
-    }
-    const Decision a = whole.update(stream[i].z, stream[i].y, stream[i].t);
-    const Decision b = broken.update(stream[i].z, stream[i].y, stream[i].t);
-    ASSERT_EQ(a.prediction.value, b.prediction.value) << i;
-  }
+  const Committee whole = testing::expect_same_life(
+      [] { return make(); }, stream.size(), [](std::size_t i) { return i % 37 == 5; },
+      [&](Committee& committee, std::size_t i) {
+        committee.update(stream[i].z, stream[i].y, stream[i].t);
+      });
   EXPECT_EQ(whole.status().tally.changes, 1);
 }
 

@@ -10,6 +10,7 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/core/random.hpp"
+#include "saved_state.hpp"
 
 namespace kelpie::disturbance_test {
 namespace {
@@ -63,12 +64,6 @@ double error_of_model(const Samples& truth, std::size_t from = 0) {
   std::vector<double> said(truth.size());
   std::ranges::transform(truth, said.begin(), &Sample::predicted);
   return error_of(said, truth, from);
-}
-
-std::string saved(Disturbance& disturbance) {
-  Archive archive;
-  disturbance.visit(archive);
-  return archive.bytes();
 }
 
 TEST(Disturbance, LeavesOnlyWhatNobodyCanKnow) {
@@ -228,22 +223,11 @@ TEST(Disturbance, SaysNothingBeforeItKnowsAnything) {
 TEST(Disturbance, SavedAndLoadedItGoesOnToTheLastBit) {
   Samples samples = disturbed(600);
   samples[299].y = 50.0;  // so that one is suspect when it is saved
-  Disturbance whole;
-  Disturbance loaded;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Sample& sample = samples[i];
-    if (i == 0 || i == 5 || i == 300) {
-      const std::string bytes = saved(whole);
-      Archive archive(bytes);
-      loaded = Disturbance();
-      loaded.visit(archive);
-      archive.finish();
-    }
-    ASSERT_EQ(loaded.at(sample.predicted, sample.t), whole.at(sample.predicted, sample.t)) << i;
-    loaded.observe(sample.predicted, sample.y, sample.t);
-    whole.observe(sample.predicted, sample.y, sample.t);
-  }
-  EXPECT_EQ(saved(loaded), saved(whole));
+  testing::expect_same_life([] { return Disturbance(); }, samples.size(),
+                            [](std::size_t i) { return i == 0 || i == 5 || i == 300; },
+                            [&](Disturbance& disturbance, std::size_t i) {
+                              disturbance.observe(samples[i].predicted, samples[i].y, samples[i].t);
+                            });
 }
 
 TEST(Disturbance, AllocatesNothing) {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "kelpie/learner/online_svr.hpp"
-#include "streams.hpp"
+#include "kelpie/svr/online_svr.hpp"
+#include "learner/streams.hpp"
 
 namespace kelpie::model_trial_test {
 namespace {

@@ -10,16 +10,18 @@
 #include <string>
 #include <vector>
 
-#include "kelpie/core/archive.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "learner/adaptive_svr.hpp"
-#include "streams.hpp"
+#include "learner/streams.hpp"
+#include "saved_state.hpp"
 
 namespace kelpie::resume_test {
 namespace {
 
+using testing::load;
 using testing::Sample;
+using testing::saved;
 using testing::wandering_stream;
 
 using Learner = std::unique_ptr<AdaptiveSvr>;
@@ -56,18 +58,6 @@ Learner make(const OnlineSvrSettings& settings, const Budget& budget = {}) {
   auto learner = std::make_unique<AdaptiveSvr>(2, settings, 5);
   learner->limit(budget);
   return learner;
-}
-
-std::string saved(AdaptiveSvr& learner) {
-  Archive archive;
-  learner.visit(archive);
-  return archive.bytes();
-}
-
-void load(AdaptiveSvr& learner, const std::string& bytes) {
-  Archive archive(bytes);
-  learner.visit(archive);
-  archive.finish();
 }
 
 std::vector<double> numbers_of(const Decision& d) {

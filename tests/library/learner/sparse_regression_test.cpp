@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "kelpie/core/archive.hpp"
 #include "kelpie/core/random.hpp"
+#include "saved_state.hpp"
 
 namespace kelpie::sparse_regression_test {
 namespace {
@@ -255,12 +255,8 @@ TEST(SparseRegression, SavedAfterADoubtItSaysTheSame) {
   }
   line.doubt_terms(2.0);
   line.forget_usual_error();
-  Archive saved;
-  line.visit(saved);
   SparseRegression loaded(2, 1, {.terms = 1, .prior_by_noise = true});
-  Archive archive(saved.bytes());
-  loaded.visit(archive);
-  archive.finish();
+  testing::load(loaded, testing::saved(line));
   const std::vector<double> z = sample(random);
   EXPECT_EQ(loaded.model()(z), line.model()(z));
 }

@@ -11,7 +11,7 @@
 
 #include "learner/committee.hpp"
 #include "learner/learner_state.hpp"
-#include "streams.hpp"
+#include "learner/streams.hpp"
 
 namespace kelpie::states_test {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
-#include "kelpie/learner/regressor.hpp"
-#include "kelpie/learner/settings.hpp"
-#include "learner/sample_collector.hpp"
+#include "kelpie/svr/regressor.hpp"
+#include "kelpie/svr/settings.hpp"
+#include "svr/sample_collector.hpp"
 
 namespace kelpie::testing {
 

@@ -10,7 +10,7 @@
 
 #include "allocation_count.hpp"
 #include "learner/adaptive_svr.hpp"
-#include "streams.hpp"
+#include "learner/streams.hpp"
 
 namespace kelpie::term_change_test {
 namespace {

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "kelpie/core/archive.hpp"
 #include "kelpie/core/random.hpp"
+#include "saved_state.hpp"
 
 namespace kelpie::triangular_fit_test {
 namespace {
@@ -185,14 +185,11 @@ TEST(TriangularFit, SavedWithoutTermsThatNeverMoved) {
   for (Eigen::Index i = 0; i < 25; ++i) {
     add(fit, i);
   }
-  Archive saved;
-  fit.visit(saved);
-  EXPECT_LT(saved.bytes().size(), 8 * (kTerms * 4 + 3 * (kTerms + 1) + 1));
+  const std::string bytes = testing::saved(fit);
+  EXPECT_LT(bytes.size(), 8 * (kTerms * 4 + 3 * (kTerms + 1) + 1));
   TriangularFit loaded(kTerms, 0.1);
   loaded.add(std::vector<double>(kTerms, 1.0), 1.0);
-  Archive archive(saved.bytes());
-  loaded.visit(archive);
-  archive.finish();
+  testing::load(loaded, bytes);
   for (Eigen::Index i = 25; i < 50; ++i) {
     add(fit, i);
     add(loaded, i);

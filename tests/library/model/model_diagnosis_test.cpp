@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
-#include "kelpie/motion/diagnosis.hpp"
+#include "kelpie/vehicle/diagnosis.hpp"
 #include "model/planar_drive.hpp"
 
 namespace kelpie::model_diagnosis_test {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "kelpie/core/error.hpp"
-#include "kelpie/learner/regressor.hpp"
 #include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/svr/regressor.hpp"
 #include "planar_drive.hpp"
 #include "support.hpp"
 

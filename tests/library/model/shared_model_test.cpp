@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "allocation_count.hpp"
+#include "files/model_block.hpp"
 #include "model/dynamics_axis.hpp"
-#include "model/model_block.hpp"
 #include "vehicle_stream.hpp"
 
 namespace kelpie::shared_model_test {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "allocation_count.hpp"
+#include "saved_state.hpp"
 
 namespace kelpie::warm_up_test {
 namespace {
@@ -57,17 +58,10 @@ TEST(WarmUp, AllocatesInTheConstructorOnly) {
 }
 
 TEST(WarmUp, IsSavedAndLoaded) {
-  WarmUp saved(2, 5);
-  hold(saved, 0, 4);
-  Archive out;
-  saved.visit(out);
-  WarmUp loaded(2, 5);
-  Archive in(out.bytes());
-  loaded.visit(in);
-  in.finish();
-  hold(saved, 4, 7);
-  hold(loaded, 4, 7);
-  EXPECT_EQ(times(loaded), times(saved));
+  testing::expect_same_life([] { return WarmUp(2, 5); }, 9, [](std::size_t) { return true; },
+                            [](WarmUp& warm_up, std::size_t i) {
+                              hold(warm_up, static_cast<int>(i), static_cast<int>(i) + 1);
+                            });
 }
 
 }  // namespace

@@ -76,11 +76,11 @@ void expect_feasible(const DualProblem& dual) {
   }
 }
 
-TEST(SmoSolver, AgreesWithLibsvmOnHundredsOfProblems) {
+// The last of 300 problems have up to 600 samples.
+void expect_agreement_with_libsvm(int trials) {
   constexpr double kTolerance = 1e-7;
   RandomStream random(11, "libsvm");
   int unique = 0;
-  const int trials = testing::thorough() ? 300 : 291;  // the last have up to 600 samples
   for (int trial = 0; trial < trials; ++trial) {
     const std::size_t n = trial < 290 ? 2 + random.below(trial < 240 ? 40 : 150)
                                       : 300 + 30 * static_cast<std::size_t>(trial - 289);
@@ -107,6 +107,14 @@ TEST(SmoSolver, AgreesWithLibsvmOnHundredsOfProblems) {
     EXPECT_LT(largest, 1e-4 * std::max(1.0, problem.c));
   }
   EXPECT_GT(unique, 30);
+}
+
+TEST(SmoSolver, AgreesWithLibsvmOnHundredsOfProblems) {
+  expect_agreement_with_libsvm(291);
+}
+
+TEST(NightlySmoSolver, AgreesWithLibsvmOnLargeProblems) {
+  expect_agreement_with_libsvm(300);
 }
 
 TEST(SmoSolver, WarmStartReachesWhatAColdStartDoes) {

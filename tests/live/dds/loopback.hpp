@@ -26,7 +26,7 @@
 
 namespace kelpie::testing {
 
-constexpr std::chrono::seconds kPatience{30};  // on a busy machine; nothing waits so long in vain
+constexpr std::chrono::minutes kPatience{5};  // on a busy machine; nothing waits so long in vain
 
 /// A DDS domain that no other test of this machine is in at the same time.
 inline std::uint32_t own_domain() {

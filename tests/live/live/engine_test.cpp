@@ -21,8 +21,8 @@
 #include "live/checkpoint.hpp"
 #include "live/mission.hpp"
 #include "live/tuning.hpp"
-#include "motion/four_thrusters.hpp"
 #include "support.hpp"
+#include "vehicle/four_thrusters.hpp"
 
 namespace kelpie::engine_test {
 namespace {

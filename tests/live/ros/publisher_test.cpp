@@ -19,9 +19,9 @@
 #include "bag/topic_columns.hpp"
 #include "dds/loopback.hpp"
 #include "live/requests.hpp"
-#include "motion/four_thrusters.hpp"
 #include "ros/topic_transport.hpp"
 #include "support.hpp"
+#include "vehicle/four_thrusters.hpp"
 
 namespace kelpie::publisher_test {
 namespace {

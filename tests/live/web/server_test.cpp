@@ -131,12 +131,17 @@ TEST_F(WebPage, WhoComesFirstHearsWhatThereWasThenWhatIsNew) {
 
 TEST_F(WebPage, TheEndOfTheRunIsSaidWithTheLastSamplesBeforeIt) {
   std::string text;
+  std::atomic<bool> has_first{false};
   std::thread reader([&] {
-    text = heard(
-        [](const std::string& so_far) { return so_far.find("event: end") != std::string::npos; });
+    text = heard([&](const std::string& so_far) {
+      has_first = so_far.find("[0.500,5,") != std::string::npos;
+      return so_far.find("event: end") != std::string::npos;
+    });
   });
   learn(0.5, 5.0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  while (!has_first) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   learn(0.6, 6.0);
   page_->ended();
   page_.reset();

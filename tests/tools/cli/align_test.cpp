@@ -194,15 +194,14 @@ TEST_F(Align, RolloutSaysAndDoesTheSame) {
 
 TEST_F(Align, RefusesWhatIsNoShift) {
   for (const char* const wish : {"soon", "nan", "11", "''"}) {
-    const Outcome outcome = learn(std::string("--time t --align ") + wish);
-    testing::expect_refused(outcome, "--align");
+    testing::expect_refused(learn(std::string("--time t --align ") + wish), "--align");
   }
 }
 
 TEST_F(Align, ARunGoesOnOnlyWithTheSameWish) {
   testing::succeeded(learn("--time t --checkpoint-every 500"));
-  const Outcome other = learn("--time t --checkpoint-every 500 --resume --align none");
-  testing::expect_refused(other, "align: is 'auto' there, 'none' in this run");
+  testing::expect_refused(learn("--time t --checkpoint-every 500 --resume --align none"),
+                          "align: is 'auto' there, 'none' in this run");
   EXPECT_EQ(learn("--time t --checkpoint-every 500 --resume").exit_code, 0);
 }
 

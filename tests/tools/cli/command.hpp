@@ -9,9 +9,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
+#include "cli/output.hpp"
+#include "cli/program.hpp"
 #include "kelpie/core/random.hpp"
 #include "support.hpp"
 
@@ -29,8 +33,44 @@ inline std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Runs the built kelpie with `arguments` in `folder`, without a terminal.
+/// The words of a command line as a shell takes them: parted by spaces, joined by quotes.
+inline std::vector<std::string> words_of(const std::string& arguments) {
+  std::vector<std::string> words;
+  char quote = ' ';
+  bool in_word = false;
+  for (const char c : arguments) {
+    if (quote == ' ' && c == ' ') {
+      in_word = false;
+      continue;
+    }
+    if (!in_word) {
+      words.emplace_back();
+      in_word = true;
+    }
+    if (c == quote) {
+      quote = ' ';
+    } else if (quote == ' ' && (c == '\'' || c == '"')) {
+      quote = c;
+    } else {
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
+/// Runs the program with `arguments` in `folder`, within this process.
 inline Outcome kelpie(const std::filesystem::path& folder, const std::string& arguments) {
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  const cli::TextStream out;
+  const cli::TextStream err;
+  const int code = cli::program(words_of(arguments), {.out = out.file(), .err = err.file()});
+  std::filesystem::current_path(here);
+  return {code, out.text(), err.text()};
+}
+
+/// Runs the built program in a process of its own, without a terminal.
+inline Outcome kelpie_process(const std::filesystem::path& folder, const std::string& arguments) {
   const std::string command = "cd '" + folder.string() + "' && " KELPIE_COMMAND " " + arguments +
                               " >.stdout 2>.stderr </dev/null";
   const int status = std::system(command.c_str());  // NOLINT: the arguments are the tests' own
@@ -53,29 +93,6 @@ inline void expect_refused(const Outcome& outcome, const std::string& message) {
 /// Settings for tests of what holds with few samples as with many: a fifth of the computing.
 inline const std::string kFewSamples = " --set buffer=60 --set anchors=20";
 
-/// Commands in a folder of their own; the names of files are relative to the folder.
-class CommandTest : public ::testing::Test {
- protected:
-  Outcome run(const std::string& arguments) const { return kelpie(folder_.path(), arguments); }
-
-  /// A command with `--out refused` has to be refused, and to write nothing.
-  void expect_nothing_written(const std::string& command, const std::string& message) const {
-    expect_refused(run(command + " --out refused"), message);
-    EXPECT_FALSE(exists("refused")) << command;
-  }
-
-  std::string content(const std::string& file) const { return content_of(folder_ / file); }
-  nlohmann::json parsed(const std::string& file) const {
-    return nlohmann::json::parse(content(file));
-  }
-  void write(const std::string& file, const std::string& text) const {
-    write_text(folder_ / file, text);
-  }
-  bool exists(const std::string& file) const { return std::filesystem::exists(folder_ / file); }
-
-  TemporaryFolder folder_;
-};
-
 /// A log of a little vehicle that moves along one axis: u, n → udot, 10 Hz.
 inline std::string little_log(std::size_t rows) {
   RandomStream random(1, "log");
@@ -92,5 +109,46 @@ inline std::string little_log(std::size_t rows) {
   }
   return text;
 }
+
+/// Commands in a folder of their own; the names of files are relative to the folder.
+class CommandTest : public ::testing::Test {
+ protected:
+  Outcome run(const std::string& arguments) const { return kelpie(folder_.path(), arguments); }
+
+  /// A command with `--out refused` has to be refused, and to write nothing.
+  void expect_nothing_written(const std::string& command, const std::string& message) const {
+    expect_refused(run(command + " --out refused"), message);
+    EXPECT_FALSE(exists("refused")) << command;
+  }
+
+  /// A little log in log.csv, and in the folder out what `kelpie learn` with few samples makes of
+  /// the log: learned once for all tests of the process.
+  void learn_little_log(std::size_t rows = 2400) const {
+    static std::map<std::size_t, std::map<std::string, std::string>> learned;
+    write("log.csv", little_log(rows));
+    std::map<std::string, std::string>& files = learned[rows];
+    if (files.empty()) {
+      succeeded(run("learn log.csv --out out" + kFewSamples));
+      for (const auto& file : std::filesystem::directory_iterator(folder_ / "out")) {
+        files[file.path().filename()] = content_of(file.path());
+      }
+    }
+    std::filesystem::create_directory(folder_ / "out");
+    for (const auto& [name, text] : files) {
+      write("out/" + name, text);
+    }
+  }
+
+  std::string content(const std::string& file) const { return content_of(folder_ / file); }
+  nlohmann::json parsed(const std::string& file) const {
+    return nlohmann::json::parse(content(file));
+  }
+  void write(const std::string& file, const std::string& text) const {
+    write_text(folder_ / file, text);
+  }
+  bool exists(const std::string& file) const { return std::filesystem::exists(folder_ / file); }
+
+  TemporaryFolder folder_;
+};
 
 }  // namespace kelpie::testing

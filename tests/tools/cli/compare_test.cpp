@@ -54,8 +54,8 @@ TEST_F(Compare, HasTheFiguresOfLearnWithAnyNumberOfThreads) {
 }
 
 TEST_F(Compare, RecommendsLeastSquaresWhereTheTargetIsLinearInTheTerms) {
-  const Outcome outcome = testing::succeeded(kelpie(
-      folder_.path(), "compare log.csv --split tail --set buffer=20 --set learner=svr --out out"));
+  const Outcome outcome = testing::succeeded(
+      run("compare log.csv --split tail --set buffer=20 --set learner=svr --out out"));
   EXPECT_NE(outcome.out.find("udot: least squares on physics terms is better"), std::string::npos)
       << outcome.out;
   EXPECT_NE(content("out/compare.html").find("least squares on physics terms"), std::string::npos);

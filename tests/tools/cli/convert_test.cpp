@@ -85,8 +85,7 @@ TEST_F(Convert, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
       {" --columns /cmd:linear.x --msg-dir none --out x.csv", "none: is not a folder"},
   };
   for (const auto& [arguments, message] : cases) {
-    const Outcome outcome = convert(kBag + arguments);
-    testing::expect_refused(outcome, message);
+    testing::expect_refused(convert(kBag + arguments), message);
   }
   for (const char* const name : {"x.csv", "x.mcap", "x.txt"}) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / name));

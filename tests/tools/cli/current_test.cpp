@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "alignment/drifting_log.hpp"
 #include "cli/command.hpp"
 #include "core/text.hpp"
-#include "model/drifting_log.hpp"
 
 namespace kelpie::cli_current_test {
 namespace {
@@ -34,16 +34,14 @@ std::string text_of(const Log& log, const std::string& heading) {
 
 class CurrentOfALog : public testing::CommandTest {
  protected:
-  void SetUp() override { write("log.csv", text_of(Log(Log::wandering, 2500), "psi")); }
+  void SetUp() override { write("log.csv", text_of(Log(Log::wandering, 1800), "psi")); }
 
   Outcome learn(const std::string& options, const std::string& out) {
     return testing::succeeded(
         run("learn log.csv --split blocks " + options + testing::kFewSamples + " --out " + out));
   }
 
-  nlohmann::json json(const std::string& file) {
-    return nlohmann::json::parse(testing::content_of(folder_ / file));
-  }
+  nlohmann::json json(const std::string& file) { return nlohmann::json::parse(content(file)); }
 
   double r2(const std::string& out, std::size_t axis) {
     return json(out + "/result.json")["axes"][axis]["r2"]["final"];
@@ -104,7 +102,7 @@ TEST_F(CurrentOfALog, GoesWithoutAnAlignmentOfCommands) {
 }
 
 TEST_F(CurrentOfALog, StillWaterIsLearnedAsBefore) {
-  write("log.csv", text_of(Log(Log::still, 2500), "psi"));
+  write("log.csv", text_of(Log(Log::still, 1800), "psi"));
   learn("", "found");
   learn("--current none", "none");
   EXPECT_TRUE(json("found/result.json")["current"]["current"].is_null());

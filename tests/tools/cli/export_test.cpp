@@ -16,8 +16,7 @@ using testing::Outcome;
 using Export = testing::CommandTest;
 
 TEST_F(Export, WritesACFileAndRefusesWhatCannotBeOne) {
-  write("log.csv", little_log(2400));
-  testing::succeeded(run("learn log.csv --out out"));
+  learn_little_log();
   const auto exported = [&](const std::string& options) {
     return run("export out/model.json --c model.c " + options);
   };
@@ -45,8 +44,7 @@ TEST_F(Export, WritesACFileAndRefusesWhatCannotBeOne) {
 }
 
 TEST_F(Export, WritesEveryFileOrNone) {
-  write("log.csv", little_log(600));
-  testing::succeeded(run("learn log.csv --out out"));
+  learn_little_log(600);
   const std::string model = "export out/model.json ";
   testing::expect_refused(run(model + "--c out.c --header ./out.c"), "--header");
   EXPECT_FALSE(exists("out.c"));
@@ -69,7 +67,8 @@ TEST_F(Export, WritesEveryFileOrNone) {
   EXPECT_FALSE(exists("all.c"));
   EXPECT_FALSE(exists("twin.so.draft.c"));
 
-  testing::succeeded(run("learn log.csv --inputs n --targets udot --out still"));
+  testing::succeeded(
+      run("learn log.csv --inputs n --targets udot --out still" + testing::kFewSamples));
   testing::expect_refused(run("export still/model.json --c still.c --fmu still.fmu"),
                           "cannot be rolled out");
   EXPECT_FALSE(exists("still.c"));
@@ -77,7 +76,8 @@ TEST_F(Export, WritesEveryFileOrNone) {
 
 TEST_F(Export, KeepsTheUnitsOfTheModel) {
   write("log.csv", little_log(600));
-  testing::succeeded(run("learn log.csv --units u=m/s,udot=m/s^2 --out out"));
+  testing::succeeded(
+      run("learn log.csv --units u=m/s,udot=m/s^2 --out out" + testing::kFewSamples));
   testing::succeeded(run("export out/model.json --c model.c --units n=rev/s"));
   const std::string code = content("model.c");
   EXPECT_NE(code.find("_target_units[1] = {\"m s^-2\"};"), std::string::npos) << code;
@@ -85,8 +85,7 @@ TEST_F(Export, KeepsTheUnitsOfTheModel) {
 }
 
 TEST_F(Export, WritesAUnitOfFmi) {
-  write("log.csv", little_log(2400));
-  testing::succeeded(run("learn log.csv --out out"));
+  learn_little_log();
   const Outcome outcome =
       testing::succeeded(run("export out/model.json --fmu vehicle.fmu --name twin"));
   EXPECT_NE(outcome.out.find("FMU: vehicle.fmu (FMI 2.0, co-simulation"), std::string::npos);
@@ -97,8 +96,7 @@ TEST_F(Export, WritesAUnitOfFmi) {
 }
 
 TEST_F(Export, WritesALibraryWithABlockAndRefusesWhatItCannot) {
-  write("log.csv", little_log(600));
-  testing::succeeded(run("learn log.csv --out out"));
+  learn_little_log(600);
   const Outcome outcome =
       testing::succeeded(run("export out/model.json --live twin.so --header twin.h --name twin"));
   EXPECT_NE(outcome.out.find("library: twin.so"), std::string::npos);

@@ -79,8 +79,7 @@ TEST_F(Inspect, TellsMistakesWithTheRemedyAndSucceeds) {
 }
 
 TEST_F(Inspect, AMissingBagIsTheUsersFault) {
-  const Outcome outcome = run("inspect none.mcap");
-  testing::expect_refused(outcome, "none.mcap: cannot be read");
+  testing::expect_refused(run("inspect none.mcap"), "none.mcap: cannot be read");
 }
 
 }  // namespace

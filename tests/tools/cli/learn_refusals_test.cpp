@@ -20,16 +20,10 @@ using testing::little_log;
 using testing::Outcome;
 
 TEST_F(Learn, RefusesBadLogs) {
-  expect_refused("none.csv", "none.csv: cannot be read: No such file or directory");
-  write("empty.csv", "");
-  expect_refused("empty.csv", "empty.csv: is empty");
   write("ragged.csv", "t,u,udot\n0,1,2\n1,2\n");
   expect_refused("ragged.csv", "ragged.csv:3: 2 cells in this row; the header has 3");
-  write("text.csv", "t,u,udot\n0,1,2\n1,two,3\n");
-  expect_refused("text.csv --inputs u", "text.csv:3: u: 'two' is not a number");
   write("back.csv", "t,u,udot\n5,1,2\n4,2,3\n");
   expect_refused("back.csv", "back.csv:3: t: time runs backwards, from 5 (line 2) to 4 s");
-  expect_refused("back.csv", "to 4 s; rows have to be in the order of time");
   std::string swapped = "u,t,n,udot\n";
   for (int i = 0; i < 100; ++i) {
     swapped += fmt::format("{},{},{},{}\n", i, 0.2 * std::sin(i), std::cos(i), std::sin(2.0 * i));
@@ -63,18 +57,12 @@ TEST_F(Learn, RefusesTargetsThatCannotBeAccelerations) {
 TEST_F(Learn, RefusesBadSettings) {
   expect_refused("log.csv --set buffer=0", "--set: buffer: 0 is out of range");
   expect_refused("log.csv --set epsilon=-1", "--set: epsilon: -1 is out of range");
-  expect_refused("log.csv --set gama=1", "--set: gama: unknown setting (did you mean 'gamma'?)");
   expect_refused("log.csv --set gamma", "'gamma' is not of the form key=value");
   expect_refused("log.csv --set forget=lifo",
                  "'lifo' is no choice (did you mean 'fifo'?); there are fifo, paper, age");
   expect_refused("log.csv --split half",
                  "split: 'half' is no split; there are random, blocks, pieces, tail");
-  expect_refused("log.csv --rate 3 --time t", "--time");
-  expect_refused("log.csv --checkpoint-every -1",
-                 "--checkpoint-every: '-1' has to be a whole number, 0 or more");
-  expect_refused("log.csv --rate -3", "--rate: '-3' has to be a number from 1e-06 to 1e+06");
   expect_refused("log.csv --units u", "--units: 'u' is not of the form key=value");
-  expect_refused("log.csv --units u=m/s2", "log.csv: u: 'm/s2' is not a unit such as m/s^2");
   expect_refused("log.csv --units udt=m/s", "no such column (did you mean 'udot'?)");
   write("units.toml", "[log]\nunits = ['m/s']\n");
   expect_refused("log.csv --config units.toml",

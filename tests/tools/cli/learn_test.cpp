@@ -257,8 +257,8 @@ TEST_F(Learn, ItsInputsMayBePipesAndStandWhereResultsGoOnlyUnderOtherNames) {
   EXPECT_EQ(said, "");
   testing::succeeded(run("learn log.csv --config c.toml --out files"));
   EXPECT_EQ(content("pipes/model.json"), content("files/model.json"));
-  const Outcome outcome = run("learn log.csv --scales files/model.json --out files");
-  testing::expect_refused(outcome, "files/model.json: --out: would overwrite an input");
+  testing::expect_refused(run("learn log.csv --scales files/model.json --out files"),
+                          "files/model.json: --out: would overwrite an input");
 }
 
 TEST_F(Learn, ALogMayFollowAnyOption) {

@@ -15,7 +15,7 @@
 namespace kelpie::memory_test {
 namespace {
 
-using testing::kelpie;
+using testing::kelpie_process;
 using testing::little_log;
 using testing::Outcome;
 
@@ -77,9 +77,9 @@ TEST_F(Memory, TwoRunsAtOnceLoseNothing) {
     const std::filesystem::path folder = folder_ / name;
     std::filesystem::create_directory(folder);
     return std::async(std::launch::async, [folder] {
-      return kelpie(folder,
-                    "learn ../log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
-                    "--memory ../m.json")
+      return kelpie_process(folder,
+                            "learn ../log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
+                            "--memory ../m.json")
           .exit_code;
     });
   };

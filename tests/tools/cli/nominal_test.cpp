@@ -16,7 +16,6 @@ namespace {
 using Json = nlohmann::json;
 using testing::content_of;
 using testing::little_log;
-using testing::Outcome;
 
 constexpr const char* kHeavy = KELPIE_SOURCE_DIR "/vehicles/bluerov2_heavy.toml";
 constexpr const char* kOptions = " --align none --set buffer=100 --validate-every 100 --split tail";

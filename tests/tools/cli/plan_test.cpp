@@ -11,7 +11,7 @@
 
 #include "cli/command.hpp"
 #include "kelpie/core/random.hpp"
-#include "kelpie/motion/planar_fit.hpp"
+#include "kelpie/identify/planar_fit.hpp"
 
 namespace kelpie::plan_test {
 namespace {
@@ -33,7 +33,7 @@ class Plan : public testing::CommandTest {
 
   json planned(const std::string& arguments, const std::string& out) const {
     testing::succeeded(run("plan log.csv " + arguments + " --out " + out));
-    return json::parse(content(out + "/plan.json"));
+    return parsed(out + "/plan.json");
   }
 };
 
@@ -184,7 +184,7 @@ TEST_F(Plan, IsTheNextStepAfterAnAmbiguousChange) {
       << command;
   EXPECT_NE(content("learned/report.html").find("--apart th"), std::string::npos);
   testing::succeeded(run(command + " --out out"));
-  EXPECT_TRUE(json::parse(content("out/plan.json"))["reached"]);
+  EXPECT_TRUE(parsed("out/plan.json")["reached"]);
 }
 
 // Pulses around 1500 us, within the bounds of depth and tilt, and a script for ArduSub.
@@ -201,7 +201,7 @@ TEST_F(Plan, SixAxesWithAVehicleFile) {
           " --volts voltage --tell heave_drag,pitch_inertia --percent 0.5 --seconds 10 --depth 1 "
           "--tilt 20 --out out"));
   EXPECT_NE(outcome.out.find("of roll or pitch (bound 20)"), std::string::npos) << outcome.out;
-  const json plan = json::parse(content("out/plan.json"));
+  const json plan = parsed("out/plan.json");
   EXPECT_EQ(plan["names"], (json{"pitch_inertia", "heave_linear_drag", "heave_quadratic_drag"}));
   EXPECT_LE(plan["depth_m"], 1.0);
   EXPECT_LE(plan["tilt_rad"], 20.0 * 3.1416 / 180.0);

@@ -16,16 +16,12 @@ namespace kelpie::predict_test {
 namespace {
 
 using testing::kelpie;
-using testing::little_log;
 using testing::Outcome;
 using testing::write_text;
 
 class Predict : public testing::CommandTest {
  protected:
-  void SetUp() override {
-    write("log.csv", little_log(2400));
-    testing::succeeded(run("learn log.csv --out out"));
-  }
+  void SetUp() override { learn_little_log(); }
 
   Outcome predict(const std::string& log) {
     return run("predict --model out/model.json " + log + " --out p.csv");
@@ -52,7 +48,8 @@ TEST_F(Predict, TakesTheModelThatLearnWritesWhereNoneIsNamed) {
                           "out/learn/model.json: there is no such model; `kelpie learn` makes one");
   testing::expect_refused(run("rollout log.csv"), "there is no such model");
   testing::expect_refused(run("export --c model.c"), "there is no such model");
-  testing::succeeded(run("learn log.csv --out out/learn"));
+  std::filesystem::create_directory(folder_ / "out/learn");
+  std::filesystem::copy(folder_ / "out/model.json", folder_ / "out/learn/model.json");
   testing::succeeded(run("predict log.csv"));
   testing::succeeded(predict("log.csv"));
   EXPECT_EQ(content("predictions.csv"), content("p.csv"));
@@ -82,8 +79,8 @@ TEST_F(Predict, WordsStayAsTheyWereAndNoInputIsReplaced) {
   EXPECT_NE(written.find("\n1,0.1,\"dive 7\","), std::string::npos) << written;
   write("p.csv", "n,u\n1,0.1\n");
   for (const std::string log : {"p.csv", "./p.csv"}) {
-    const Outcome outcome = predict(log);
-    testing::expect_refused(outcome, "p.csv: --out: would overwrite an input; choose another name");
+    testing::expect_refused(predict(log),
+                            "p.csv: --out: would overwrite an input; choose another name");
   }
   EXPECT_EQ(content("p.csv"), "n,u\n1,0.1\n");
 }
@@ -93,8 +90,7 @@ TEST_F(Predict, ATimeWithAWordInItIsRefused) {
   auto model = parsed("out/model.json");
   model["alignment"] = {{"shift_s", 0.2}, {"rows", 2}, {"commands", {"n"}}};
   write_text(folder_ / "out" / "model.json", model.dump());
-  const Outcome outcome = predict("inputs.csv");
-  testing::expect_refused(outcome, "inputs.csv:4: t: '-' is not a number");
+  testing::expect_refused(predict("inputs.csv"), "inputs.csv:4: t: '-' is not a number");
 }
 
 TEST_F(Predict, TimesInMillisecondsAndTimeStampsAreTimes) {
@@ -131,7 +127,7 @@ TEST_F(Predict, AnotherUnitThanTheLearnedIsTold) {
   const std::string rows = content("log.csv").substr(content("log.csv").find('\n'));
   write("si.csv", "t,u [m/s],n,udot" + rows);
   write("other.csv", "t,u [cm/s],n,udot" + rows);
-  testing::succeeded(run("learn si.csv --out out"));
+  testing::succeeded(run("learn si.csv --out out" + testing::kFewSamples));
   for (const std::string command : {"predict", "rollout"}) {
     const std::string model = " --model out/model.json --out p.csv ";
     EXPECT_EQ(testing::succeeded(run(command + " si.csv" + model)).err, "");

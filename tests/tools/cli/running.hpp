@@ -49,9 +49,10 @@ class Running {
   Running& operator=(const Running&) = delete;
   Running& operator=(Running&&) = delete;
 
-  /// Waits until `happened` says so. False: the program ended before, or two minutes went by.
+  /// Waits until `happened` says so. False: the program ended before, or five minutes went by, as
+  /// many as a busy machine may take.
   bool wait_until(const std::function<bool()>& happened) {
-    const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     while (!happened()) {
       if (!read_terminal() || std::chrono::steady_clock::now() > limit) {
         return false;
@@ -67,7 +68,7 @@ class Running {
   void press_ctrl_c() const { EXPECT_EQ(::write(terminal_, "\x03", 1), 1); }
   void send(int signal) const { EXPECT_EQ(::kill(child_, signal), 0); }
 
-  /// Waits for the end: the exit code, or the signal that ended it as a negative number. After two
+  /// Waits for the end: the exit code, or the signal that ended it as a negative number. After five
   /// minutes it is killed.
   int exit_code() {
     wait_until([] { return false; });

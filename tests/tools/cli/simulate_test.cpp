@@ -64,8 +64,8 @@ TEST_F(Simulate, SixAxesOfABlueRovWithVoltageAndPulses) {
 
 TEST_F(Simulate, BadInputEndsWithCode2AndItsPlace) {
   write("bad.toml", "rate_hz = 4.0\nrate_hzz = 4.0\n");
-  const Outcome outcome = run("simulate bad.toml --out a.csv");
-  testing::expect_refused(outcome, "bad.toml:2: rate_hzz: unknown key (did you mean 'rate_hz'?)");
+  testing::expect_refused(run("simulate bad.toml --out a.csv"),
+                          "bad.toml:2: rate_hzz: unknown key (did you mean 'rate_hz'?)");
   EXPECT_EQ(run("simulate nothing.toml --out a.csv").exit_code, 2);
   EXPECT_EQ(run("simulate " + kSmall).exit_code, 2);
   EXPECT_EQ(run("simulate " + kSmall + " --seed -1 --out a.csv").exit_code, 2);
@@ -84,8 +84,8 @@ TEST_F(Simulate, ARunawayEndsWithCode2AndNoFile) {
                         "[[phases]]\n"
                         "configuration = \"stiff\"\n"
                         "duration_s = 100.0\n");
-  const Outcome outcome = run("simulate runaway.toml --out a.csv");
-  testing::expect_refused(outcome, "runaway.toml: the simulation left finite numbers at t = ");
+  testing::expect_refused(run("simulate runaway.toml --out a.csv"),
+                          "runaway.toml: the simulation left finite numbers at t = ");
   EXPECT_FALSE(exists("a.csv"));
 }
 

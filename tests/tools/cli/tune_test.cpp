@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "support.hpp"
+#include "cli/command.hpp"
 
 namespace kelpie::tune_test {
 namespace {
 
-using testing::TemporaryFolder;
-
-std::string content(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-class TuneCommand : public ::testing::Test {
+class TuneCommand : public testing::CommandTest {
  protected:
   void SetUp() override { write_log("log.csv", "u,n,udot", 700, 0.5); }
 
@@ -37,47 +27,45 @@ class TuneCommand : public ::testing::Test {
   }
 
   // Exit code; what was printed stands in said().
-  int run(const std::string& arguments) {
-    const std::string command = std::string(KELPIE_COMMAND) + " " + arguments + " > " +
-                                (folder_ / "said").string() + " 2>&1";
-    return WEXITSTATUS(std::system(command.c_str()));  // NOLINT: that is what is tested
+  int ran(const std::string& arguments) {
+    const testing::Outcome outcome = run(arguments);
+    said_ = outcome.out + outcome.err;
+    return outcome.exit_code;
   }
 
   int tune(const std::string& more) {
-    return run("tune " + (folder_ / "log.csv").string() + " --out " + out().string() +
-               " --split tail --set warmup=30 --set buffer=60 --candidates 4 " + more);
+    return ran(
+        "tune log.csv --out out --split tail --set warmup=30 --set buffer=60 --candidates 4 " +
+        more);
   }
 
-  std::string said() const { return content(folder_ / "said"); }
-  std::filesystem::path out() const { return folder_ / "out"; }
+  const std::string& said() const { return said_; }
 
-  TemporaryFolder folder_;
+ private:
+  std::string said_;
 };
 
 TEST_F(TuneCommand, WritesSettingsThatLearnTakesAndTheSameBytesWhenRunAgain) {
   ASSERT_EQ(tune("--threads 2 --verbose"), 0) << said();
   EXPECT_NE(said().find("paper (Table I)"), std::string::npos);
-  const std::string toml = content(out() / "tuned.toml");
-  const std::string json = content(out() / "tune.json");
+  const std::string toml = content("out/tuned.toml");
+  const std::string json = content("out/tune.json");
   EXPECT_NE(toml.find("buffer = 60"), std::string::npos);
   ASSERT_EQ(tune("--threads 1"), 0) << said();
   EXPECT_NE(said().find("resuming with"), std::string::npos);
-  EXPECT_EQ(content(out() / "tune.json"), json);
+  EXPECT_EQ(content("out/tune.json"), json);
 
-  const std::string config = " --config " + (out() / "tuned.toml").string();
-  ASSERT_EQ(run("config --all --axes 1" + config), 0) << said();
+  const std::string config = " --config out/tuned.toml";
+  ASSERT_EQ(ran("config --all --axes 1" + config), 0) << said();
   EXPECT_EQ("\n" + said(), toml.substr(toml.find("\n\n") + 1))
       << "the settings read back as written";
-  EXPECT_EQ(run("learn " + (folder_ / "log.csv").string() + config + " --split tail --out " +
-                (folder_ / "learned").string()),
-            0)
-      << said();
+  EXPECT_EQ(ran("learn log.csv" + config + " --split tail --out learned"), 0) << said();
 }
 
 TEST_F(TuneCommand, SaysWhetherThereIsAGainAndWhatToRunNext) {
   ASSERT_EQ(tune("--search k=10:10.0001"), 0) << said();
   EXPECT_NE(said().find("No gain: keep the defaults."), std::string::npos) << said();
-  EXPECT_NE(said().find("/tuned.toml --split tail\n"), std::string::npos) << said();
+  EXPECT_NE(said().find("out/tuned.toml --split tail\n"), std::string::npos) << said();
   EXPECT_EQ(said().find("paper (Table I)"), std::string::npos) << said();
   EXPECT_EQ(tune("--search k=10:10.0001 --quiet"), 0);
   EXPECT_EQ(said().find("Searched"), std::string::npos) << said();
@@ -86,31 +74,28 @@ TEST_F(TuneCommand, SaysWhetherThereIsAGainAndWhatToRunNext) {
 // Logs that are tuned together need not fit into one stream.
 TEST_F(TuneCommand, TheNextCommandLearnsOneOfSeveralLogs) {
   write_log("more.csv", "u,n,udot", 700, 0.5);
-  ASSERT_EQ(tune((folder_ / "more.csv").string() + " --search k=10:10.0001"), 0) << said();
-  EXPECT_NE(said().find("/log.csv --config"), std::string::npos) << said();
+  ASSERT_EQ(tune("more.csv --search k=10:10.0001"), 0) << said();
+  EXPECT_NE(said().find("learn log.csv --config"), std::string::npos) << said();
   EXPECT_EQ(said().find("more.csv --config"), std::string::npos) << said();
 }
 
 // tuned.toml lacks the [log] that the next command needs.
 TEST_F(TuneCommand, TheNextCommandLearnsALogThatItsConfigurationExplains) {
   write_log("named.csv", "forward,n,slope", 700, 0.5);
-  std::ofstream(folder_ / "c.toml")
-      << "buffer = 60\nc = 0.00001\n[log]\ninputs = [\"forward\", \"n\"]\n"
-         "targets = [\"slope\"]\n";
-  const std::string log = (folder_ / "named.csv").string();
-  const std::string config = (folder_ / "c.toml").string();
-  ASSERT_EQ(run("tune " + log + " --config " + config +
-                " --set warmup=30 --set learner=svr --candidates 4 --search c=1:100:log --out " +
-                out().string()),
+  write("c.toml",
+        "buffer = 60\nc = 0.00001\n[log]\ninputs = [\"forward\", \"n\"]\n"
+        "targets = [\"slope\"]\n");
+  ASSERT_EQ(ran("tune named.csv --config c.toml --set warmup=30 --set learner=svr --candidates 4 "
+                "--search c=1:100:log --out out"),
             0)
       << said();
-  const std::string begin = "kelpie learn " + log + " --config " + config;
+  const std::string begin = "kelpie learn named.csv --config c.toml";
   const std::size_t at = said().find(begin);
   ASSERT_NE(at, std::string::npos) << said();
   const std::string next = said().substr(at + 7, said().find('\n', at) - at - 7);
   EXPECT_NE(next.find(" --set warmup=30"), std::string::npos) << next;
   EXPECT_NE(next.find(" --set c="), std::string::npos) << next;
-  EXPECT_EQ(run(next + " --out " + (folder_ / "learned").string()), 0) << said();
+  EXPECT_EQ(ran(next + " --out learned"), 0) << said();
 }
 
 TEST_F(TuneCommand, RefusesAJournalOfAnotherSearch) {
@@ -121,12 +106,11 @@ TEST_F(TuneCommand, RefusesAJournalOfAnotherSearch) {
 
 TEST_F(TuneCommand, TunesOnSeveralLogsAndTellsTheScoresOfEach) {
   write_log("other.csv", "u,thruster,udot", 300, 2.0);
-  const std::string other = (folder_ / "other.csv").string();
-  ASSERT_EQ(tune(other + " --set learner=svr --verbose"), 0) << said();
+  ASSERT_EQ(tune("other.csv --set learner=svr --verbose"), 0) << said();
   EXPECT_NE(said().find("Scores by log"), std::string::npos) << said();
-  const auto json = nlohmann::json::parse(content(out() / "tune.json"));
+  const nlohmann::json json = parsed("out/tune.json");
   ASSERT_EQ(json["logs"].size(), 2U);
-  EXPECT_EQ(json["logs"][1]["name"], other);
+  EXPECT_EQ(json["logs"][1]["name"], "other.csv");
   EXPECT_EQ(json["logs"][1]["rows"], 240);
   const auto& axes = json["axes"];
   const double mean = (json["logs"][0]["axes"][0]["score"].get<double>() +
@@ -138,14 +122,14 @@ TEST_F(TuneCommand, TunesOnSeveralLogsAndTellsTheScoresOfEach) {
 
 TEST_F(TuneCommand, RefusesLogsThatDoNotGoTogether) {
   write_log("other.csv", "v,n,vdot", 300, 2.0);
-  EXPECT_EQ(tune((folder_ / "other.csv").string()), 2);
+  EXPECT_EQ(tune("other.csv"), 2);
   EXPECT_NE(said().find("other.csv: targets: are vdot"), std::string::npos) << said();
   write_log("third.csv", "w,n,udot", 300, 2.0);
-  EXPECT_EQ(tune((folder_ / "third.csv").string() + " --set states=u --targets udot"), 2);
+  EXPECT_EQ(tune("third.csv --set states=u --targets udot"), 2);
   EXPECT_NE(said().find("third.csv: states: 'u' is no input"), std::string::npos) << said();
-  EXPECT_EQ(tune((folder_ / "log.csv").string()), 2);
+  EXPECT_EQ(tune("log.csv"), 2);
   EXPECT_NE(said().find("is given twice"), std::string::npos) << said();
-  EXPECT_FALSE(std::filesystem::exists(out()));
+  EXPECT_FALSE(exists("out"));
 }
 
 TEST_F(TuneCommand, RefusesWhatContradictsItself) {
@@ -154,12 +138,12 @@ TEST_F(TuneCommand, RefusesWhatContradictsItself) {
   EXPECT_EQ(tune("--only 3"), 2);
   EXPECT_NE(said().find("no configuration 3"), std::string::npos);
   EXPECT_EQ(tune("--candidates 0"), 2);
-  EXPECT_FALSE(std::filesystem::exists(out())) << "nothing is begun on a wrong command line";
+  EXPECT_FALSE(exists("out")) << "nothing is begun on a wrong command line";
 }
 
 TEST_F(TuneCommand, ATimeOfOneLogIsNoneOfTwo) {
   write_log("more.csv", "u,n,udot", 700, 0.5);
-  EXPECT_EQ(tune((folder_ / "more.csv").string() + " --since 10"), 2);
+  EXPECT_EQ(tune("more.csv --since 10"), 2);
   EXPECT_NE(said().find("--since: is a time of one log"), std::string::npos) << said();
 }
 

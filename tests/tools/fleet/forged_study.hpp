@@ -50,8 +50,6 @@ struct ForgedStudy {
      public:
       explicit Forger(std::function<std::string(std::size_t)> result)
           : result_(std::move(result)) {}
-      bool leads() const override { return true; }
-      std::size_t workers() const override { return 1; }
       bool run(const jobs::Run& run) override {
         for (std::size_t i = 0; i < run.jobs.size(); ++i) {
           run.done(i, result_(i));

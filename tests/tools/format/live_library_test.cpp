@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "file/mapped_file.hpp"
+#include "files/model_block.hpp"
 #include "format/compiled_model.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/shared_model.hpp"
 #include "model/dynamics_axis.hpp"
-#include "model/model_block.hpp"
 #include "model/random_model.hpp"
 #include "model/vehicle_stream.hpp"
 #include "support.hpp"

@@ -18,10 +18,10 @@
 #include "kelpie/model/trained_model.hpp"
 #include "model/random_model.hpp"
 #include "model/snapshot.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
 #include "support.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::model_c_test {
 namespace {
@@ -457,10 +457,10 @@ TEST(ModelC, RefusesWhatIsNoName) {
 // second derivatives are those of a learned model, and of what the actuators make of commands.
 TEST(ModelC, OfTheSimulatedVehicleNeedsNothingButExp) {
   const TemporaryFolder folder;
-  vehicle::Scenario scenario =
-      vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "small.toml");
+  simulator::Scenario scenario = simulator::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) /
+                                                          "scenarios" / "small.toml");
   scenario.phases.front().duration_s = 250.0;
-  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
+  const log::Table table = study::log_table(simulator::simulate(scenario), "simulated");
   const log::Dataset data = log::make_dataset(table, log::guess_roles(table, {}));
   const ModelSettings settings = ModelSettings::from_preset("default", 3);
   DynamicsModel learner(data.input_names, data.target_names, settings);

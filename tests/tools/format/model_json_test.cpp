@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/kelpie.h"
-#include "kelpie/model/alignment.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "model/snapshot.hpp"

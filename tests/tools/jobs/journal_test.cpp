@@ -164,29 +164,5 @@ TEST(Journal, APipeIsRefusedWithoutWaitingForAWriter) {
   EXPECT_NE(message.find("cannot be read"), std::string::npos) << message;
 }
 
-// A killed run leaves the journals of its ranks.
-TEST(Journal, TakesOverWhatRanksHaveLeftBesideIt) {
-  const TemporaryFolder folder;
-  const auto file = folder / "journal.jsonl";
-  {
-    Journal(file, kKind, kHeader).add("first", "1");
-    Journal second(jobs::rank_journal(file, 1), kKind, kHeader);
-    second.add("first", "7");
-    second.add("second", "2");
-    Journal(jobs::rank_journal(file, 20), kKind, kHeader).add("third", "3");
-    append(jobs::rank_journal(file, 20), R"({"crc32":"0)");
-    const Journal journal(file, kKind, kHeader);
-    EXPECT_EQ(journal.size(), 2U);  // the second rank's is in use
-  }
-  EXPECT_FALSE(std::filesystem::exists(folder / "journal.rank-20.jsonl"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "journal.rank-1.jsonl"));
-  const Journal journal(file, kKind, kHeader);
-  EXPECT_FALSE(std::filesystem::exists(folder / "journal.rank-1.jsonl"));
-  EXPECT_EQ(journal.size(), 3U);
-  EXPECT_EQ(journal.result("first"), "1");
-  EXPECT_EQ(journal.result("second"), "2");
-  EXPECT_EQ(journal.result("third"), "3");
-}
-
 }  // namespace
 }  // namespace kelpie::journal_test

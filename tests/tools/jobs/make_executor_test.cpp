@@ -26,17 +26,14 @@ TEST(MakeExecutor, KnowsFromTheEnvironmentWhoStartedHowMany) {
       start_in({{"SLURM_PROCID", "3"}, {"SLURM_STEP_NUM_TASKS", "8"}, {"PMIX_RANK", "3"}});
   EXPECT_EQ(by_srun.by, "srun");
   EXPECT_EQ(by_srun.processes, 8U);
-  EXPECT_TRUE(by_srun.has_mpi);
-  EXPECT_FALSE(start_in({{"SLURM_PROCID", "3"}, {"SLURM_STEP_NUM_TASKS", "8"}}).has_mpi);
 
   // The script of a job is one process, however many its steps have.
   EXPECT_EQ(start_in({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}}).processes, 1U);
-  // mpirun inside a job of Slurm, whose variables it passes on.
-  EXPECT_EQ(
-      start_in(
-          {{"OMPI_COMM_WORLD_SIZE", "2"}, {"SLURM_PROCID", "0"}, {"SLURM_STEP_NUM_TASKS", "1"}})
-          .processes,
-      2U);
+  // mpirun inside a job of Slurm passes the variables of the job on.
+  const jobs::Start by_mpirun = start_in(
+      {{"OMPI_COMM_WORLD_SIZE", "2"}, {"SLURM_PROCID", "0"}, {"SLURM_STEP_NUM_TASKS", "1"}});
+  EXPECT_EQ(by_mpirun.by, "mpirun");
+  EXPECT_EQ(by_mpirun.processes, 2U);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace kelpie::progress_jobs_test {
 namespace {
 
 TEST(Progress, AStopThatComesWhileItAsksIsNotLost) {
-  const std::vector<jobs::Job> list{{"job", "task", 1.0}};
+  const std::vector<jobs::Job> list(1);
   jobs::Progress* asked = nullptr;
   const jobs::Run run{.jobs = list, .work = nullptr, .keep_going = [&](double) {
                         asked->stop();

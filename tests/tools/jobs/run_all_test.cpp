@@ -34,5 +34,16 @@ TEST(RunAll, ThrowsWhatAJobThrowsAndBeginsNoFurther) {
   EXPECT_THROW(jobs::run_all(1000, 4, job), std::runtime_error);
 }
 
+TEST(RunAll, EndsWhenAskedAndTellsTheShare) {
+  std::size_t done = 0;
+  double last = 0.0;
+  const auto job = [&](std::size_t) { ++done; };
+  EXPECT_TRUE(jobs::run_while([&](double share) { return (last = share) <= 1.0; }, 8, 1, job));
+  EXPECT_EQ(done, 8U);
+  EXPECT_EQ(last, 1.0);
+  EXPECT_FALSE(jobs::run_while([](double share) { return share < 0.3; }, 10, 1, job));
+  EXPECT_EQ(done, 11U);
+}
+
 }  // namespace
 }  // namespace kelpie::run_all_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "kelpie/learner/regressor.hpp"
+#include "kelpie/svr/regressor.hpp"
 
 namespace kelpie::testing {
 

@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "identify/weak_form.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
-#include "motion/weak_form.hpp"
+#include "simulator/frames.hpp"
+#include "simulator/pilot.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/sensors.hpp"
+#include "simulator/simulation.hpp"
+#include "simulator/simulator.hpp"
 #include "study/six_axes.hpp"
 #include "study/tuning.hpp"
 #include "support.hpp"
-#include "vehicle/frames.hpp"
-#include "vehicle/pilot.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/sensors.hpp"
-#include "vehicle/simulation.hpp"
-#include "vehicle/simulator.hpp"
 
 namespace kelpie::study::drive_plan_test {
 namespace {
@@ -219,9 +219,9 @@ TEST(DrivePlan, AllThrustersAndForcesAreCauses) {
             "surge_force, sway_force, yaw_moment");
 }
 
-vehicle::Scenario gentle_heavy() {
-  vehicle::Scenario scenario =
-      vehicle::read_scenario(KELPIE_SOURCE_DIR "/scenarios/bluerov2_heavy.toml");
+simulator::Scenario gentle_heavy() {
+  simulator::Scenario scenario =
+      simulator::read_scenario(KELPIE_SOURCE_DIR "/scenarios/bluerov2_heavy.toml");
   scenario.excitation.effort << 12, 12, 10, 1, 1, 1;
   scenario.excitation.dither = 0.02;
   return scenario;
@@ -233,14 +233,14 @@ class HeavyDrive {
   explicit HeavyDrive(std::uint64_t seed)
       : scenario_(gentle_heavy()),
         simulator_(scenario_.vehicle,
-                   vehicle::make_plant(scenario_.vehicle, scenario_.configurations.front()),
-                   Eigen::Vector3d::Zero(), vehicle::State{}),
+                   simulator::make_plant(scenario_.vehicle, scenario_.configurations.front()),
+                   Eigen::Vector3d::Zero(), simulator::State{}),
         sensors_(scenario_.noise, seed),
         pilot_(scenario_.vehicle, scenario_.excitation, seed) {}
 
   void pilot(double duration_s) {
     for (int tick = 0; tick < ticks(duration_s); ++tick) {
-      advance(pilot_.advance(simulator_.state(), vehicle::kTickS, 1.0));
+      advance(pilot_.advance(simulator_.state(), simulator::kTickS, 1.0));
     }
   }
 
@@ -251,7 +251,7 @@ class HeavyDrive {
   }
 
   DriveMotion motion() const {
-    const Eigen::Vector3d angles = vehicle::euler_angles(simulator_.state().attitude);
+    const Eigen::Vector3d angles = simulator::euler_angles(simulator_.state().attitude);
     const Eigen::Vector3d& position = simulator_.state().position_m;
     DriveMotion motion{.position_m = {position.x(), position.y(), position.z()},
                        .angles_rad = {angles.x(), angles.y(), angles.z()}};
@@ -282,23 +282,23 @@ class HeavyDrive {
 
  private:
   static int ticks(double duration_s) {
-    return static_cast<int>(std::lround(duration_s / vehicle::kTickS));
+    return static_cast<int>(std::lround(duration_s / simulator::kTickS));
   }
 
-  void advance(const vehicle::RotorSpeeds& commands) {
+  void advance(const simulator::RotorSpeeds& commands) {
     simulator_.advance(commands);
     if (++ticks_ % 5 == 0) {
-      const vehicle::Vector6 velocity = sensors_.measure(simulator_.state().velocity);
+      const simulator::Vector6 velocity = sensors_.measure(simulator_.state().velocity);
       log_.push_back(
-          vehicle::six_axis_row(simulator_, scenario_.vehicle.command_unit, velocity, sensors_));
+          simulator::six_axis_row(simulator_, scenario_.vehicle.command_unit, velocity, sensors_));
     }
   }
 
-  vehicle::Scenario scenario_;
-  vehicle::Simulator simulator_;
-  vehicle::SixAxisSensors sensors_;
-  vehicle::Pilot pilot_;
-  std::vector<vehicle::SixAxisRow> log_;
+  simulator::Scenario scenario_;
+  simulator::Simulator simulator_;
+  simulator::SixAxisSensors sensors_;
+  simulator::Pilot pilot_;
+  std::vector<simulator::SixAxisRow> log_;
   int ticks_ = 0;
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outlier node judged on faults put into the targets of training rows: the rows it is judged on
-// are clean. The learner alone. Prints what it measures. Of the real log it takes the first 3,000
-// rows, of the simulated drive 3,000 s; KELPIE_THOROUGH=1 takes all rows, and 5,000 s, for the
-// tables of docs/measured/reproduction.md.
+// are clean. The learner alone. MeasuredFaults prints the table of docs/measured/reproduction.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,13 +19,13 @@
 #include "kelpie/motion/term_set.hpp"
 #include "log/dataset.hpp"
 #include "model/dynamics_axis.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/metrics.hpp"
 #include "study/simulated_log.hpp"
 #include "study/split.hpp"
 #include "study/training_scales.hpp"
 #include "support.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::fault_test {
 namespace {
@@ -129,13 +127,12 @@ Faulty with_faults(const log::Dataset& data, const study::Split& split, std::siz
   return result;
 }
 
-void expect_robust(const log::Dataset& data) {
-  // All kinds, or spikes alone where the sanitizers make a run twenty times as long.
-#if defined(__SANITIZE_ADDRESS__)
-  constexpr std::size_t kKinds = 1;
-#else
-  constexpr std::size_t kKinds = 4;
-#endif
+constexpr std::array kFaults{std::pair{Fault::spikes, "spikes"}, std::pair{Fault::bursts, "bursts"},
+                             std::pair{Fault::wrong_sign, "wrong sign"},
+                             std::pair{Fault::stuck, "stuck"}};
+
+// The first `kinds` of the faults.
+void expect_robust(const log::Dataset& data, std::size_t kinds) {
   const study::Split split = study::make_split(data, {});
   for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
     const Faulty clean = with_faults(data, split, axis, Fault::none);
@@ -143,10 +140,7 @@ void expect_robust(const log::Dataset& data) {
                100.0 * clean.rejected);
     EXPECT_LE(clean.rejected, 0.01);
     EXPECT_EQ(clean.changes, 0);
-    constexpr std::array kFaults{
-        std::pair{Fault::spikes, "spikes"}, std::pair{Fault::bursts, "bursts"},
-        std::pair{Fault::wrong_sign, "wrong sign"}, std::pair{Fault::stuck, "stuck"}};
-    for (const auto& [kind, name] : std::span(kFaults).first(kKinds)) {
+    for (const auto& [kind, name] : std::span(kFaults).first(kinds)) {
       const Faulty faulty = with_faults(data, split, axis, kind);
       fmt::print("; {}: R² {:.3f}, {:.1f} % gone", name, faulty.r2, 100.0 * faulty.gone);
       EXPECT_EQ(faulty.changes, 0) << name;
@@ -157,28 +151,31 @@ void expect_robust(const log::Dataset& data) {
   }
 }
 
-TEST(Faults, LeaveTheBufferAndDoLittleHarmInSimulation) {
-  vehicle::Scenario scenario =
-      vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
+log::Dataset simulated(double duration_s) {
+  simulator::Scenario scenario = simulator::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) /
+                                                          "scenarios" / "paper.toml");
   scenario.phases.resize(1);
-  scenario.phases.front().duration_s = testing::thorough() ? 5000.0 : 3000.0;
-  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
-  expect_robust(log::make_dataset(table, log::guess_roles(table, {})));
+  scenario.phases.front().duration_s = duration_s;
+  const log::Table table = study::log_table(simulator::simulate(scenario), "simulated");
+  return log::make_dataset(table, log::guess_roles(table, {}));
 }
 
-TEST(Faults, LeaveTheBufferAndDoLittleHarmOnTheRealLog) {
+TEST(Faults, SpikesLeaveTheBufferAndDoLittleHarm) {
+  expect_robust(simulated(3000.0), 1);
+}
+
+TEST(MeasuredFaults, LeaveTheBufferAndDoLittleHarmInSimulation) {
+  expect_robust(simulated(5000.0), kFaults.size());
+}
+
+TEST(MeasuredFaults, LeaveTheBufferAndDoLittleHarmOnTheRealLog) {
   const auto file = testing::data_file("dagon_config1.csv");
   if (file.empty()) {
     GTEST_SKIP() << "the log of AUV Dagon is not here";
   }
-  log::Table table = log::read_csv(file);
-  if (!testing::thorough()) {
-    for (auto& column : table.columns) {
-      column.resize(3000);
-    }
-    table.lines.resize(3000);
-  }
-  expect_robust(log::make_dataset(table, log::guess_roles(table, {.rate_hz = 4.0})));
+  const log::Table table = log::read_csv(file);
+  expect_robust(log::make_dataset(table, log::guess_roles(table, {.rate_hz = 4.0})),
+                kFaults.size());
 }
 
 }  // namespace

@@ -18,12 +18,5 @@ TEST(RSquared, KnowsItsLandmarks) {
   EXPECT_TRUE(std::isnan(study::r_squared({}, {})));
 }
 
-TEST(PowerExponent, IsThatOfAPowerLaw) {
-  const std::vector<double> x{1.0, 2.0, 4.0, 16.0};
-  EXPECT_NEAR(study::power_exponent(x, std::vector{3.0, 6.0, 12.0, 48.0}), 1.0, 1e-12);
-  EXPECT_NEAR(study::power_exponent(x, std::vector{5.0, 20.0, 80.0, 1280.0}), 2.0, 1e-12);
-  EXPECT_TRUE(std::isnan(study::power_exponent(std::vector{2.0, 2.0}, std::vector{1.0, 2.0})));
-}
-
 }  // namespace
 }  // namespace kelpie::metrics_test

@@ -7,41 +7,41 @@
 #include <string>
 
 #include "kelpie/core/error.hpp"
-#include "vehicle/dynamics.hpp"
-#include "vehicle/fixtures.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
+#include "simulator/dynamics.hpp"
+#include "simulator/fixtures.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 
 namespace kelpie::six_axes_test {
 namespace {
 
-vehicle::Scenario heavy(double duration_s, std::uint64_t seed) {
-  vehicle::Scenario scenario =
-      vehicle::read_scenario(testing::source_file("scenarios/bluerov2_heavy.toml"));
+simulator::Scenario heavy(double duration_s, std::uint64_t seed) {
+  simulator::Scenario scenario =
+      simulator::read_scenario(testing::source_file("scenarios/bluerov2_heavy.toml"));
   scenario.phases.front().duration_s = duration_s;
   scenario.seed = seed;
   return scenario;
 }
 
-SixAxisRows rows_of(const vehicle::Scenario& scenario) {
-  return study::six_axis_rows(vehicle::simulate_six_axes(scenario), scenario.vehicle);
+SixAxisRows rows_of(const simulator::Scenario& scenario) {
+  return study::six_axis_rows(simulator::simulate_six_axes(scenario), scenario.vehicle);
 }
 
-void expect_the_simulators_equation(const vehicle::VehicleParameters& vehicle,
+void expect_the_simulators_equation(const simulator::VehicleParameters& vehicle,
                                     RandomStream& stream) {
   SixAxisFit fit;
   fit.thrusters = study::six_axis_rows({}, vehicle).thrusters;
   for (const double value : study::six_axis_truth(vehicle)) {
     fit.parameters.push_back({.name = "", .value = value});
   }
-  const vehicle::Dynamics dynamics(testing::nominal(vehicle));
+  const simulator::Dynamics dynamics(testing::nominal(vehicle));
   for (int trial = 0; trial < 20; ++trial) {
-    const vehicle::State state = testing::random_state(stream);
-    vehicle::RotorSpeeds speeds(8);
+    const simulator::State state = testing::random_state(stream);
+    simulator::RotorSpeeds speeds(8);
     for (double& speed : speeds) {
       speed = stream.uniform(-1.0, 1.0);
     }
-    const vehicle::Vector6 truth = dynamics.acceleration(state.attitude, state.velocity, speeds);
+    const simulator::Vector6 truth = dynamics.acceleration(state.attitude, state.velocity, speeds);
     const Eigen::Vector3d down = state.attitude.conjugate() * Eigen::Vector3d::UnitZ();
     const SixVector found =
         fit.acceleration(std::span<const double, 6>(state.velocity.data(), 6),
@@ -56,7 +56,7 @@ void expect_the_simulators_equation(const vehicle::VehicleParameters& vehicle,
 // and forward at once has a product of inertia, which the structure lacks.
 TEST(SixAxes, TheEquationIsThatOfTheSimulator) {
   RandomStream stream(5, "six axes");
-  vehicle::VehicleParameters vehicle = heavy(10.0, 1).vehicle;
+  simulator::VehicleParameters vehicle = heavy(10.0, 1).vehicle;
   vehicle.centre_of_buoyancy_m = {-0.02, 0.01, -0.04};
   for (const Eigen::Vector3d& centre :
        {Eigen::Vector3d(0.0, 0.0, 0.05), Eigen::Vector3d(0.03, 0.0, 0.0)}) {
@@ -66,8 +66,8 @@ TEST(SixAxes, TheEquationIsThatOfTheSimulator) {
 }
 
 // Simulation, one seed; docs/howto/identify.md has twenty.
-TEST(SixAxes, TenMinutesOfASimulatedVehicleTellItsParameters) {
-  const vehicle::Scenario scenario = heavy(600.0, 11);
+TEST(MeasuredSixAxes, TenMinutesOfASimulatedVehicleTellItsParameters) {
+  const simulator::Scenario scenario = heavy(600.0, 11);
   const SixAxisFit fit = scaled_by_inertia(fit_six_axes(rows_of(scenario)),
                                            testing::nominal(scenario.vehicle).mass(0, 0), 0.0);
   const std::vector<double> truth = study::six_axis_truth(scenario.vehicle);

@@ -10,23 +10,23 @@
 #include <vector>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "simulator/scenario_file.hpp"
+#include "simulator/simulation.hpp"
 #include "study/simulated_log.hpp"
 #include "study/stream.hpp"
-#include "vehicle/scenario_file.hpp"
-#include "vehicle/simulation.hpp"
 
 namespace kelpie::term_info_test {
 namespace {
 
 // Two stages: nominal, then the right thruster (th2) at half its effect.
 log::Dataset damaged_dagon(double seconds) {
-  vehicle::Scenario scenario =
-      vehicle::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) / "scenarios" / "paper.toml");
+  simulator::Scenario scenario = simulator::read_scenario(std::filesystem::path(KELPIE_SOURCE_DIR) /
+                                                          "scenarios" / "paper.toml");
   scenario.phases.resize(2);
-  for (vehicle::Phase& phase : scenario.phases) {
+  for (simulator::Phase& phase : scenario.phases) {
     phase.duration_s = seconds;
   }
-  const log::Table table = study::log_table(vehicle::simulate(scenario), "simulated");
+  const log::Table table = study::log_table(simulator::simulate(scenario), "simulated");
   log::Roles roles = log::guess_roles(table, {});
   roles.units = {{"u", "m/s"},     {"v", "m/s"},      {"r", "rad/s"},
                  {"th2", "rev/s"}, {"udot", "m/s^2"}, {"rdot", "rad/s^2"}};

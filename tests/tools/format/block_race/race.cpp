@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "files/model_block.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "model/model_block.hpp"
 #include "model/snapshot.hpp"
 
 extern "C" {

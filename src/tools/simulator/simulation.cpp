@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "simulator/dynamics.hpp"
+#include "simulator/frames.hpp"
+#include "simulator/pilot.hpp"
+#include "simulator/simulator.hpp"
+#include "simulator/tuning.hpp"
+
+namespace kelpie::simulator {
+namespace {
+
+constexpr std::int64_t kSlowestSensorTicks = kTicksPerSecond / kTuning.least_sensor_rate_hz;
+constexpr std::int64_t kProgressTicks = kTuning.progress_every_s * kTicksPerSecond;
+
+// The sensors measure at the rows and evenly between them, at 4 Hz or somewhat faster.
+std::int64_t sensor_ticks(std::int64_t row_ticks) {
+  std::int64_t ticks = std::min(row_ticks, kSlowestSensorTicks);
+  while (row_ticks % ticks != 0) {
+    --ticks;
+  }
+  return ticks;
+}
+
+Eigen::Vector3d lateral_max_speeds(const VehicleParameters& vehicle) {
+  return {vehicle.thrusters[kSurgeLeft].max_speed_rps, vehicle.thrusters[kSurgeRight].max_speed_rps,
+          vehicle.thrusters[kSway].max_speed_rps};
+}
+
+// A scenario being driven. `Watcher` sees the vehicle at rest, every change of phase and every
+// tick.
+template <typename Watcher>
+class Mission {
+ public:
+  Mission(const Scenario& scenario, const Progress& progress)
+      : scenario_(scenario),
+        progress_(progress),
+        all_ticks_(ticks_in(scenario.duration_s())),
+        simulator_(scenario.vehicle, plant_of(scenario.phases.front()), scenario.current_m_s,
+                   State{}),
+        watcher_(scenario, simulator_) {
+    if (scenario.excitation.in_plane()) {
+      excitation_.emplace(scenario.excitation, lateral_max_speeds(scenario.vehicle), scenario.seed);
+    } else {
+      pilot_.emplace(scenario.vehicle, scenario.excitation, scenario.seed);
+    }
+  }
+
+  void drive(std::size_t index) {
+    const Phase& phase = scenario_.phases[index];
+    const Plant to = plant_of(phase);
+    const Plant from = index > 0 ? plant_of(scenario_.phases[index - 1]) : to;
+    const std::int64_t ticks = ticks_in(phase.duration_s);
+    const std::int64_t ramp_ticks = std::llround(phase.ramp_s * kTicksPerSecond);
+    simulator_.set_plant(ramp_ticks > 0 ? from : to);
+    watcher_.begin(phase);
+    for (std::int64_t tick = 0; tick < ticks; ++tick) {
+      if (tick < ramp_ticks) {
+        simulator_.set_plant(
+            blend(from, to, static_cast<double>(tick + 1) / static_cast<double>(ramp_ticks)));
+      }
+      advance(phase.amplitude);
+      watcher_.record(phase.configuration);
+      ++ticks_;
+      if (progress_ && (ticks_ % kProgressTicks == 0 || ticks_ == all_ticks_)) {
+        progress_(static_cast<double>(ticks_) / static_cast<double>(all_ticks_));
+      }
+    }
+  }
+
+  auto finish() && { return std::move(watcher_).finish(); }
+
+ private:
+  Plant plant_of(const Phase& phase) const {
+    return make_plant(scenario_.vehicle, scenario_.configurations[phase.configuration]);
+  }
+
+  void advance(double amplitude) {
+    if (excitation_) {
+      simulator_.advance_in_plane(excitation_->advance(kTickS, amplitude));
+    } else {
+      simulator_.advance(pilot_->advance(simulator_.state(), kTickS, amplitude));
+    }
+  }
+
+  const Scenario& scenario_;
+  const Progress& progress_;
+  std::int64_t all_ticks_;
+  std::optional<Excitation> excitation_;
+  std::optional<Pilot> pilot_;
+  Simulator simulator_;
+  Watcher watcher_;
+  std::int64_t ticks_ = 0;
+};
+
+// Rows at their rate, of velocities that are measured at the sensors' rate. `Kind` tells how a
+// velocity is read, and makes the rows.
+template <typename Kind>
+class Recorder {
+ public:
+  Recorder(const Scenario& scenario, const Simulator& simulator)
+      : scenario_(scenario),
+        simulator_(simulator),
+        row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
+        sensor_ticks_(sensor_ticks(row_ticks_)),
+        sensors_(scenario.noise, scenario.seed) {
+    measure();
+  }
+
+  void begin(const Phase& phase) {
+    Kind::set_fault(sensors_, scenario_.configurations[phase.configuration]);
+  }
+
+  void record(std::size_t configuration) {
+    ++ticks_;
+    if (ticks_ % sensor_ticks_ == 0) {
+      measure();
+    }
+    if (ticks_ % row_ticks_ == 0) {
+      rows_.push_back(Kind::row(scenario_, simulator_, measurements_.back(), sensors_));
+      rows_.back().configuration = configuration;
+    }
+  }
+
+  std::vector<typename Kind::Row> finish() && {
+    const double period_s = static_cast<double>(sensor_ticks_) * kTickS;
+    const std::vector<typename Kind::Velocity> slopes =
+        smoothed_slopes<Kind::Velocity::RowsAtCompileTime>(measurements_, period_s,
+                                                           Kind::kHalfWindowS);
+    const auto per_row = static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      rows_[row].acceleration = slopes[(row + 1) * per_row];
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  void measure() { measurements_.push_back(sensors_.measure(Kind::velocity(simulator_))); }
+
+  const Scenario& scenario_;
+  const Simulator& simulator_;
+  std::int64_t row_ticks_, sensor_ticks_;
+  typename Kind::Sensors sensors_;
+  std::int64_t ticks_ = 0;
+  std::vector<typename Kind::Velocity> measurements_;
+  std::vector<typename Kind::Row> rows_;
+};
+
+struct InPlane {
+  using Row = LogRow;
+  using Sensors = VelocitySensors;
+  using Velocity = Eigen::Vector3d;
+  static constexpr double kHalfWindowS = kTuning.half_window_s;
+
+  static void set_fault(Sensors& sensors, const Configuration& configuration) {
+    sensors.set_fault(configuration.sensors);
+  }
+  static Velocity velocity(const Simulator& simulator) {
+    return planar_flu(simulator.state().velocity);
+  }
+  static Row row(const Scenario& /*scenario*/, const Simulator& simulator, const Velocity& measured,
+                 Sensors& /*sensors*/) {
+    return {.t_s = simulator.time_s(),
+            .configuration = 0,
+            .velocity = measured,
+            .rotors_rps = simulator.state().rotors_rps.head<3>(),
+            .acceleration = Velocity::Zero(),
+            .true_acceleration = planar_flu(simulator.acceleration())};
+  }
+};
+
+struct OnSixAxes {
+  using Row = SixAxisRow;
+  using Sensors = SixAxisSensors;
+  using Velocity = Vector6;
+  static constexpr double kHalfWindowS = kTuning.six_half_window_s;
+
+  // validate() refuses faults of sensors.
+  static void set_fault(Sensors& /*sensors*/, const Configuration& /*configuration*/) {}
+  static Velocity velocity(const Simulator& simulator) { return simulator.state().velocity; }
+  static Row row(const Scenario& scenario, const Simulator& simulator, const Velocity& measured,
+                 Sensors& sensors) {
+    Row row = six_axis_row(simulator, scenario.vehicle.command_unit, measured, sensors);
+    row.true_acceleration = simulator.acceleration();
+    return row;
+  }
+};
+
+template <typename Kind>
+auto recorded(const Scenario& scenario, const Progress& progress) {
+  scenario.validate();
+  Mission<Recorder<Kind>> mission(scenario, progress);
+  for (std::size_t phase = 0; phase < scenario.phases.size(); ++phase) {
+    mission.drive(phase);
+  }
+  return std::move(mission).finish();
+}
+
+}  // namespace
+
+SixAxisRow six_axis_row(const Simulator& simulator, CommandUnit unit, const Vector6& velocity,
+                        SixAxisSensors& sensors) {
+  return {.t_s = simulator.time_s(),
+          .configuration = 0,
+          .velocity = velocity,
+          .attitude_rad = sensors.measure_attitude(euler_angles(simulator.state().attitude)),
+          .commands = simulator.commands().unaryExpr(
+              [unit](double command) { return command_in_unit(unit, command); }),
+          .voltage_v = simulator.voltage_v(),
+          .acceleration = Vector6::Zero(),
+          .true_acceleration = Vector6::Zero()};
+}
+
+std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress) {
+  require_plane(scenario.vehicle);
+  return recorded<InPlane>(scenario, progress);
+}
+
+std::vector<SixAxisRow> simulate_six_axes(const Scenario& scenario, const Progress& progress) {
+  return recorded<OnSixAxes>(scenario, progress);
+}
+
+}  // namespace kelpie::simulator
