@@ -27,9 +27,9 @@ void load(Object& object, std::string_view bytes) {
   archive.finish();
 }
 
-/// `show(object, i)` shows row i of `rows` to an object, and to another object that goes on as a new
-/// object with the saved state wherever `stops(i)`. Both have the same state at every stop and in
-/// the end. Returns the object that never stopped.
+/// `show(object, i)` shows row i of `rows` to an object, and to another object that goes on as a
+/// new object with the saved state wherever `stops(i)`. Both have the same state at every stop and
+/// in the end. Returns the object that never stopped.
 template <typename Make, typename Show, typename Stops>
 auto expect_same_life(const Make& make, std::size_t rows, const Stops& stops, const Show& show) {
   auto whole = make();

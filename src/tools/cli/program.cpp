@@ -22,8 +22,9 @@ void add_absent(CLI::App& app, const std::string& name, const std::string& where
 
 // For a version or two.
 void add_moved(CLI::App& app, const std::string& name) {
-  add_absent(app, name,
-             "has moved to `kelpie-lab " + name + "`, which a build with -DKELPIE_BUILD_LAB=ON makes");
+  add_absent(
+      app, name,
+      "has moved to `kelpie-lab " + name + "`, which a build with -DKELPIE_BUILD_LAB=ON makes");
 }
 
 }  // namespace
