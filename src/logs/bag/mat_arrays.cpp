@@ -363,8 +363,8 @@ void read_with_matio(const std::filesystem::path& file, const MatNews& news) {
   }
   const bool is_version_5 = Mat_GetVersion(mat.get()) == MAT_FT_MAT5;
   const file::MappedFile content(file);
-  const std::endian order =
-      content.bytes()[kMatHead - 2] == std::byte{'I'} ? std::endian::little : std::endian::big;
+  const bool is_little = is_version_5 && content.bytes()[kMatHead - 2] == std::byte{'I'};
+  const std::endian order = is_little ? std::endian::little : std::endian::big;
   const std::vector<MatElement> whole =
       is_version_5 ? whole_variables(content.bytes(), order, file, news.lose)
                    : std::vector<MatElement>();
