@@ -18,6 +18,30 @@ char lower(char letter) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
 }
 
+// Bytes of the letter in UTF-8 at the beginning of a text; 0: none, or none to be shown.
+std::size_t letter_bytes(std::string_view text) {
+  constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};  // no longer than needed
+  const auto lead = static_cast<unsigned char>(text.front());
+  const std::size_t bytes = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  if ((lead >= 0x80 && lead < 0xC2) || lead > 0xF4 || text.size() < bytes) {
+    return 0;
+  }
+  char32_t letter = bytes == 1 ? lead : lead & (0xFFU >> (bytes + 1));
+  for (const char next : text.substr(1, bytes - 1)) {
+    if ((static_cast<unsigned char>(next) & 0xC0U) != 0x80U) {
+      return 0;
+    }
+    letter = letter << 6U | (static_cast<unsigned char>(next) & 0x3FU);
+  }
+  const auto is_among = [&](char32_t first, char32_t last) {
+    return first <= letter && letter <= last;
+  };
+  const bool is_none = letter < kLeast.at(bytes) || is_among(0xD800, 0xDFFF) || letter > 0x10FFFF;
+  const bool is_control = letter < ' ' || is_among(0x7F, 0x9F) || is_among(0x2028, 0x202E) ||
+                          is_among(0x2066, 0x2069);  // of lines, terminals, directions of writing
+  return is_none || is_control ? 0 : bytes;
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -65,6 +89,19 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+std::string printable(std::string_view text, std::size_t most) {
+  std::string shown;
+  for (std::size_t letters = 0; !text.empty(); ++letters) {
+    if (letters == most) {
+      return shown + "…";
+    }
+    const std::size_t bytes = letter_bytes(text);
+    shown += bytes == 0 ? "?" : text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return shown;
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {

@@ -20,6 +20,10 @@ std::string join_text(std::span<const std::string> parts, std::string_view separ
 /// Number of insertions, deletions and replacements between two words, upper and lower case alike.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
+/// Text of others, as a message can quote: '?' in place of control characters, ends of lines and
+/// bytes that are no UTF-8, and an ellipsis after the first `most` letters of a longer text.
+std::string printable(std::string_view text, std::size_t most = 80);
+
 /// " (did you mean 'x'?)" for the candidate nearest to `word`; "" where more than a third of the
 /// letters differ.
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);

@@ -31,27 +31,12 @@
 namespace kelpie::log {
 namespace {
 
-constexpr std::size_t kShownBytes = 40;
+constexpr std::size_t kShownLetters = 40;
 
 // Throws InputError (file, line, column).
 [[noreturn]] void refuse_csv(const std::string& source, std::size_t line,
                              const std::string& message, const std::string& field = {}) {
   throw InputError({.file = source, .line = line, .field = field}, message);
-}
-
-// The part of a cell that a message can show: short, without control characters.
-std::string shown_cell(std::string_view cell) {
-  std::size_t length = std::min(cell.size(), kShownBytes);
-  const auto continues_letter = [&](std::size_t i) {  // in UTF-8
-    return i < cell.size() && (static_cast<unsigned char>(cell[i]) & 0xC0U) == 0x80U;
-  };
-  while (length > 0 && continues_letter(length)) {
-    --length;
-  }
-  std::string text(cell.substr(0, length));
-  std::ranges::replace_if(
-      text, [](unsigned char letter) { return letter < ' ' || letter == '\x7F'; }, '?');
-  return text + (length < cell.size() ? "…" : "");
 }
 
 // The lines of a text, each without its end (LF, CRLF or CR), numbered from 1.
@@ -207,7 +192,7 @@ bool are_stamps(const Table::Text& text, std::vector<std::int64_t>& times_ns, Ta
   for (const auto& [row, word] : text.words) {
     const std::optional<std::int64_t> time_ns = parse_stamp(word);
     if (!time_ns) {
-      other.cell = shown_cell(word);
+      other.cell = printable(word, kShownLetters);
       other.line = row;
       return false;
     }
@@ -293,7 +278,8 @@ void name_columns(Table& table, std::span<const std::string_view> cells, std::si
       refuse_csv(table.source, line, "has no name in the header; every column needs one", place);
     }
     if (!seen.insert(whole).second) {
-      refuse_csv(table.source, line, "two columns have this name; rename one", shown_cell(whole));
+      refuse_csv(table.source, line, "two columns have this name; rename one",
+                 printable(whole, kShownLetters));
     }
     NameAndUnit known = name_and_unit(whole);
     if (short_names.count(known.name) > 1) {
@@ -417,7 +403,7 @@ class TableBuilder {
           }
           if (!table_.has_text(column)) {
             table_.texts[column].line = line;
-            table_.texts[column].cell = shown_cell(cells[column]);
+            table_.texts[column].cell = printable(cells[column], kShownLetters);
           }
           table_.texts[column].words.emplace_back(table_.rows(), cells[column]);
         }
@@ -458,7 +444,7 @@ class TableBuilder {
       refuse_csv(table_.source, line,
                  fmt::format("'{}': decimals have a comma on line {} and a point on line {}; write "
                              "all of them alike, and nothing between thousands",
-                             shown_cell(cell), comma_line_, point_line_),
+                             printable(cell, kShownLetters), comma_line_, point_line_),
                  table_.names[column]);
     }
   }

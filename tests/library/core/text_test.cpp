@@ -42,6 +42,29 @@ TEST(Text, SuggestsOnlyWhatIsNear) {
   EXPECT_EQ(did_you_mean("x", {}), "");
 }
 
+TEST(Text, ShowsOfOthersOneShortPrintableLine) {
+  struct Case {
+    std::string text;
+    std::string shown;
+  };
+  const std::vector<Case> cases{
+      {"/odom", "/odom"},
+      {"tiefe ü, 深さ, 🐟", "tiefe ü, 深さ, 🐟"},
+      {"a\nb\r\tc\x1b[2J\x7f", "a?b??c?[2J?"},
+      {std::string("a\0b", 3), "a?b"},
+      {"\xc2\x9b|\xe2\x80\xa8|\xe2\x80\xae",
+       "??|???|???"},  // 1-letter CSI, end of line, right to left
+      {"\xff|\x80|\xc3|\xe2\x82", "?|?|?|??"},
+      {"\xc0\xaf|\xed\xa0\x80|\xf4\x90\x80\x80", "??|???|????"},  // too long, half, too far
+      {std::string(80, 'x'), std::string(80, 'x')},
+      {std::string(20'000, 'x'), std::string(80, 'x') + "…"},
+  };
+  for (const Case& one : cases) {
+    EXPECT_EQ(printable(one.text), one.shown);
+  }
+  EXPECT_EQ(printable("üüü", 2), "üü…");  // not in the middle of a letter
+}
+
 TEST(Text, EditDistanceIsAMetricOnKnownPairs) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
   EXPECT_EQ(edit_distance("", "abc"), 3U);
