@@ -231,10 +231,28 @@ def calm(room):
 
 
 def many_topics(room):
-    others = room.peer()
+    """Of many types, both qualities, and the same names again with others."""
+    others = [room.peer(), room.peer()]
     for k in range(5000):
-        others.order(f"publish /other/topic_{k} {TEXT} reliable")
+        kind = [TEXT, ODOMETRY, f"other_msgs/msg/Type{k % 500}"][k % 3]
+        quality = ["reliable", "best_effort"][k % 2]
+        others[k // 2500].order(f"publish /other/topic_{k % 3500} {kind} {quality}")
     room.vehicle.order("mission 2000 1000")
+
+
+def types_that_change(room):
+    """On the vehicle's topic, short of and beyond what a name may have; each is said, a few times."""
+    for k in range(10):
+        other = room.peer()
+        for n in range(30):
+            name = "T" * [1, 30, 200, 20_000][n % 4]
+            other.order(f"publish /odom other_msgs/msg/{name}{k}x{n} "
+                        f"{['reliable', 'best_effort'][n % 2]}")
+        room.vehicle.order("mission 100 1000")
+        room.peers.remove(other)
+        other.end()
+    if len(room.live.text) > 100_000 or max(map(len, room.live.text.splitlines())) > 1000:
+        room.faults.append("events without end")
 
 
 def topics_that_come_and_go(room):
@@ -299,7 +317,9 @@ def huge_values(room):
 def clocks(room):
     other = room.peer()
     other.order(f"publish /odom {ODOMETRY} reliable")
-    for second in [1_731_536_000] * 3 + [0, 2_147_483_647, -2_147_483_648, 1_700_000_000]:
+    year = 365 * 86_400
+    for second in [1_731_536_000] * 3 + [0, 2_147_483_647, -2_147_483_648, 1_700_000_000,
+                                         1_700_000_000 - year, 1_700_000_000 + year] * 2:
         other.order(f"odometry {second} 0.1")
         room.vehicle.order("mission 100 1000")
 
@@ -331,7 +351,7 @@ def datagrams(room):
         room.faults.append("a line of text for each packet")
 
 
-ATTACKS = [calm, many_topics, topics_that_come_and_go, long_commands, many_commands, long_messages,
+ATTACKS = [calm, many_topics, types_that_change, topics_that_come_and_go, long_commands, many_commands, long_messages,
            garbage, huge_values, clocks, full_disk, datagrams, commands_at_the_end]
 
 

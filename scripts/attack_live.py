@@ -4,18 +4,23 @@
 
     python3 scripts/attack_live.py KELPIE web [--count 2000]
     python3 scripts/attack_live.py KELPIE mavlink [--count 100000]
+    python3 scripts/attack_live.py KELPIE rubbish [--count 10000]
+    python3 scripts/attack_live.py KELPIE replay [--count 20000]
 
 KELPIE is the program. A simulated ROV (examples/bluerov_udp.py) drives meanwhile. web sends hostile
-requests to the page, mavlink hostile datagrams to the vehicle's port, before and during the drive.
-Ended by itself within four minutes. Exit code 1 after one of: a signal, an exit code other than 0,
+requests to the page, mavlink hostile datagrams to the vehicle's port, before and during the drive,
+rubbish datagrams of 6 kB that begin a frame at every byte, 3 MB/s, and replay the vehicle's own
+signed frames again, whole and damaged. Ended by itself within four minutes. Exit code 1 after one of: a signal, an exit code other than 0,
 ten seconds without an answer or a prediction, more memory than --memory [MB] above the memory before
 the attack, a prediction outside of the accelerations seen, fewer samples learned during the attack
-than half of those that the vehicle sent, at the end R² below 0.5 or more than 0.1 below that of
-least squares on the same samples, predictions after the attack that explain less than half of the
-variance of the vehicle's accelerations. The machine may be busy: samples, not seconds, are counted.
+than half of those that the vehicle sent (than 95 % during rubbish), at the end R² below 0.5 or more
+than 0.1 below that of least squares on the same samples, predictions after the attack that explain
+less than 0.3 of the variance of the vehicle's accelerations. The machine may be busy: samples, not
+seconds, are counted.
 """
 
 import argparse
+import hashlib
 import random
 import re
 import signal
@@ -42,7 +47,9 @@ WHOLE = 600  # in all, so that the first tenth of a minute is forgotten in R²
 WAIT_S = 75.0
 LONGEST_DELAY_S = 3.0  # of a prediction, on the clock of the vehicle
 DATAGRAMS_PER_S = 2500
+RUBBISH_BYTES, RUBBISH_PER_S = 6_000, 500  # of datagrams
 RATE = 10  # rows per second, of mavlink_log.toml
+KEY = bytes(range(32))
 # Number: (byte of the checksum, fields in the order they are sent in).
 MESSAGES = {**rov.MESSAGES, "ODOMETRY": (331, 91, "<Q3f4f3f3f21f21fBB")}
 OUTPUTS = ["m1", "m2", "m3", "m4"]
@@ -54,15 +61,16 @@ align = "none"
 page = {page}
 [live.mavlink]
 connection = "udp:{link}"
+{key}
 """
 
 
-def configuration(page, link):
+def configuration(page, link, key):
     log = (ROOT / "scripts/mavlink_log.toml").read_text()
     log = log.replace("{inputs}", ", ".join(f'"{name}"' for name in OUTPUTS))
     log = log.replace("{commands}", "\n".join(f'{name} = "SERVO_OUTPUT_RAW:servo{k}_raw"'
                                               for k, name in enumerate(OUTPUTS, 1)))
-    return LEARNER + log + LIVE.format(page=page, link=link)
+    return LEARNER + log + LIVE.format(page=page, link=link, key=key)
 
 
 def free_port(kind):
@@ -71,12 +79,31 @@ def free_port(kind):
         return one.getsockname()[1]
 
 
+class SignedLine(rov.Line):
+    """Signs every frame, and keeps the last ones."""
+
+    def __init__(self, host, port):
+        super().__init__(host, port)
+        self.sent = []
+        self.signing_time = int((time.time() - 1_420_070_400) * 1e5)  # 10 µs since 2015
+
+    def send_bytes(self, data):
+        number = int.from_bytes(data[7:10], "little")
+        body = data[1:2] + b"\1" + data[3:-2]
+        self.signing_time += 1
+        signed = b"\xfd" + body + rov.checksum(body, MESSAGES[rov.NAMES[number]][1])
+        signed += b"\0" + self.signing_time.to_bytes(6, "little")
+        signed += hashlib.sha256(KEY + signed).digest()[:6]
+        self.sent = self.sent[-1000:] + [signed]
+        super().send_bytes(signed)
+
+
 class Vehicle(threading.Thread):
     """The ROV, and a judge of the predictions that come back."""
 
-    def __init__(self, port):
+    def __init__(self, port, signs):
         super().__init__(daemon=True)
-        self.line = rov.Line("127.0.0.1", port)
+        self.line = (SignedLine if signs else rov.Line)("127.0.0.1", port)
         self.ends = threading.Event()
         self.seen = {"udot": [0.0, 0.0], "rdot": [0.0, 0.0]}
         self.body = rov.Rov()
@@ -153,9 +180,11 @@ def r_squared(pairs):
 class Run:
     """kelpie live in a folder of its own."""
 
-    def __init__(self, kelpie, folder):
+    def __init__(self, kelpie, folder, signs):
         self.page, self.link = free_port(socket.SOCK_STREAM), free_port(socket.SOCK_DGRAM)
-        (folder / "live.toml").write_text(configuration(self.page, self.link))
+        (folder / "key").write_text(KEY.hex())
+        key = f'key = "{folder / "key"}"' if signs else ""
+        (folder / "live.toml").write_text(configuration(self.page, self.link, key))
         self.said = (folder / "said.txt").open("w+")
         self.process = subprocess.Popen(
             [kelpie, "live", "--config", folder / "live.toml", "--out", folder / "out"],
@@ -278,9 +307,13 @@ def attack_web(run, _vehicle, count, chance):
             check(run.metrics() is not None, f"no answer after {number} requests")
 
 
-def frame(system, component, sequence, name, values):
+def frame(system, component, sequence, name, values, version=2):
     number, extra, layout = MESSAGES[name]
-    payload = struct.pack(layout, *values).rstrip(b"\0") or b"\0"
+    payload = struct.pack(layout, *values)
+    if version == 1:
+        body = struct.pack("<5B", len(payload), sequence % 256, system, component, number) + payload
+        return b"\xfe" + body + rov.checksum(body, extra)
+    payload = payload.rstrip(b"\0") or b"\0"
     body = struct.pack("<6B", len(payload), 0, 0, sequence % 256, system, component)
     body += number.to_bytes(3, "little") + payload
     return b"\xfd" + body + rov.checksum(body, extra)
@@ -308,7 +341,12 @@ def datagrams(chance):
                 frame(1, 1, sequence, "ODOMETRY", odometry()),
                 frame(*sender(), sequence, "ODOMETRY", odometry()),
                 frame(1, 1, sequence, "SERVO_OUTPUT_RAW", (0, *[65535] * 8, 0)),
-                frame(1, 1, sequence, "COMMAND_ACK", (rov.SET_MESSAGE_INTERVAL, 3))]
+                frame(1, 1, sequence, "COMMAND_ACK", (rov.SET_MESSAGE_INTERVAL, 3)),
+                frame(1, 1, sequence, "HEARTBEAT", beat, version=1),
+                frame(*sender(), sequence, "SERVO_OUTPUT_RAW", (0, *[65535] * 8, 0), version=1),
+                frame(1, 1, sequence, "PARAM_VALUE", (1.0, 9, 9, b"MOT_1_DIRECTION", 9)),
+                frame(*sender(), sequence, "PARAM_VALUE", (wild(), 65535, sequence % 65536,
+                                                           chance.randbytes(16), 9))]
         yield from some
         mutant = bytearray(chance.choice(some))
         for _ in range(chance.randrange(1, 6)):
@@ -321,7 +359,26 @@ def datagrams(chance):
             yield frame(*sender(), sequence, "HEARTBEAT", beat)
 
 
-def send_datagrams(run, source, count, sockets, chance):
+def rubbish(chance):
+    """Frames that begin at every byte, every sixth, every tenth; and noise of such begins."""
+    patterns = [b"\xfd", b"\xfe", bytes.fromhex("feff00000083"), bytes.fromhex("fdff" + "00" * 8)]
+    noise = bytes(chance.choice(b"\xfd\xfe") for _ in range(RUBBISH_BYTES))
+    while True:
+        for pattern in patterns:
+            yield (pattern * RUBBISH_BYTES)[:RUBBISH_BYTES]
+        yield noise
+
+
+def repeats(sent, chance):
+    """What the vehicle has signed, again: as it was, damaged, or within a frame of version 1."""
+    while True:
+        data = bytearray(chance.choice(sent()))
+        if chance.random() < 0.5:
+            data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+        yield bytes(data) if chance.random() < 0.9 else b"\xfe" + bytes(data)
+
+
+def send_datagrams(run, source, count, sockets, chance, per_s=DATAGRAMS_PER_S):
     began = time.monotonic()
     for number in range(count):
         if run.process.poll() is not None:
@@ -330,15 +387,30 @@ def send_datagrams(run, source, count, sockets, chance):
             chance.choice(sockets).sendto(next(source), ("127.0.0.1", run.link))
         except ConnectionError:
             pass
-        if number % 500 == 0:
-            time.sleep(max(0.0, began + number / DATAGRAMS_PER_S - time.monotonic()))
-        if number % 10_000 == 0:
+        if number % (per_s // 5) == 0:
+            time.sleep(max(0.0, began + number / per_s - time.monotonic()))
+        if number % (4 * per_s) == 0:
             check(run.metrics() is not None, f"no answer after {number} datagrams")
 
 
 def attack_mavlink(run, _vehicle, count, chance):
     sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(20)]
     send_datagrams(run, datagrams(chance), count, sockets, chance)
+
+
+def attack_rubbish(run, _vehicle, count, chance):
+    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(3)]
+    send_datagrams(run, rubbish(chance), count, sockets, chance, RUBBISH_PER_S)
+
+
+def attack_replay(run, vehicle, count, chance):
+    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(3)]
+    send_datagrams(run, repeats(lambda: vehicle.line.sent, chance), count, sockets, chance)
+
+
+# Of each attack: what happens, how often, and the share of the rows that is learned meanwhile.
+ATTACKS = {"web": (attack_web, 2_000, 0.5), "mavlink": (attack_mavlink, 100_000, 0.5),
+           "rubbish": (attack_rubbish, 10_000, 0.95), "replay": (attack_replay, 20_000, 0.5)}
 
 
 def flood_beforehand(run, count, chance):
@@ -365,25 +437,26 @@ def text(values):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("kelpie")
-    parser.add_argument("attack", choices=["web", "mavlink"])
-    parser.add_argument("--count", type=int, help="requests (2000) or datagrams (100000)")
+    parser.add_argument("attack", choices=list(ATTACKS))
+    parser.add_argument("--count", type=int, help="requests or datagrams")
     parser.add_argument("--memory", type=float, default=300.0, help="[MB], %(default)s")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     chance = random.Random(options.seed)
-    is_web = options.attack == "web"
-    count = options.count or (2_000 if is_web else 100_000)
+    attack, count, share = ATTACKS[options.attack]
+    count = options.count or count
+    signs = attack is attack_replay
     with tempfile.TemporaryDirectory(prefix="kelpie_attack_") as folder:
-        run = Run(options.kelpie, Path(folder))
-        if not is_web:
+        run = Run(options.kelpie, Path(folder), signs)
+        if attack is attack_mavlink:
             flood_beforehand(run, min(10_000, count // 4), chance)
             count -= min(10_000, count // 4)
-        vehicle = Vehicle(run.link)
+        vehicle = Vehicle(run.link, signs)
         vehicle.start()
         run.wait_until_learned(WARM_UP)
         before, memory = run.learned(), run.megabytes("VmRSS")
         began, drove_s = time.monotonic(), vehicle.body.t
-        (attack_web if is_web else attack_mavlink)(run, vehicle, count, chance)
+        attack(run, vehicle, count, chance)
         passed_s, ended_s = time.monotonic() - began, vehicle.body.t
         learned = run.learned()
         run.wait_until_learned(max(learned + LATER, WHOLE))
@@ -402,12 +475,12 @@ def main():
     check(most - memory <= options.memory, "memory")
     check(vehicle.predictions > 0 and vehicle.longest_silence_s < PATIENCE_S, "predictions ceased")
     check(not vehicle.beyond, f"predictions beyond what was seen: {vehicle.beyond[:5]}")
-    check(meanwhile > 0.5 * RATE * (ended_s - drove_s) - RATE,
+    check(meanwhile > share * RATE * (ended_s - drove_s) - RATE,
           f"{meanwhile:.0f} samples learned of {ended_s - drove_s:.0f} s of driving")
     check(later >= LATER, f"{later:.0f} samples learned after the attack")
     check(all(r2[axis] > max(0.5, squares_r2[axis] - 0.1) for axis in r2),
           f"R², where least squares has {text(squares_r2)}")
-    check(all(value > 0.5 for value in said_r2.values()), "predictions beside the truth")
+    check(all(value > 0.3 for value in said_r2.values()), "predictions beside the truth")
     print(f"{count} in {passed_s:.0f} s; memory {memory:.0f} MB before, {most:.0f} MB at most; "
           f"slowest honest answer {run.slowest_s:.2f} s; {meanwhile:.0f} samples learned of "
           f"{ended_s - drove_s:.0f} s of driving, {later:.0f} later; {vehicle.predictions} "

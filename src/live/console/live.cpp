@@ -94,7 +94,7 @@ live::Configuration read_configuration(const LiveArguments& options) {
     return live::read_configuration(file::TomlNode::parse(options.told, name), name, options.set);
   }
   if (options.demo) {
-    return live::rows_configuration(demo_rows(options.duration_s), options.config, options.set);
+    return demo_configuration(options.duration_s, options.config, options.set);
   }
   if (!replay.path.empty() && !bag::is_bag(replay.path)) {
     return rows_configuration(options);
@@ -228,6 +228,7 @@ class LiveRun {
     });
     service_.stopping();
     outputs_.health(engine.health());  // what the last samples told
+    outputs_.tell_left_out(live::EventLimit::Time::max());
     if (engine.has_ended()) {
       outputs_.ended();
     }

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view kTopicPrefix = "rt";
 constexpr std::string_view kTypeInfix = "::msg::dds_::";
+constexpr std::size_t kLongestName = 255;  // of ROS 2
 
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -54,7 +55,8 @@ std::string dds_type_name(const std::string& ros_type) {
 
 std::string ros_type_name(std::string_view dds_type) {
   const std::size_t infix = dds_type.find(kTypeInfix);
-  if (infix == std::string_view::npos || !dds_type.ends_with('_')) {
+  if (infix == std::string_view::npos || !dds_type.ends_with('_') ||
+      dds_type.size() > kLongestName) {
     return {};
   }
   const std::string_view package = dds_type.substr(0, infix);
@@ -70,7 +72,7 @@ std::string dds_topic_name(const std::string& ros_topic) {
 }
 
 std::string ros_topic_name(std::string_view dds_topic) {
-  if (!dds_topic.starts_with(kTopicPrefix)) {
+  if (!dds_topic.starts_with(kTopicPrefix) || dds_topic.size() > kLongestName) {
     return {};
   }
   dds_topic.remove_prefix(kTopicPrefix.size());

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "core/text.hpp"
 #include "dds/names.hpp"
 #include "dds/raw_type.hpp"
 #include "kelpie/core/error.hpp"
@@ -64,6 +65,10 @@ std::vector<std::string> TopicEnd::mismatches(std::int32_t end) const {
       const std::string text = mismatch(end, other);
       if (!text.empty() && std::ranges::find(found, text) == found.end()) {
         found.push_back(text);
+        if (found.size() == kTuning.most_mismatches) {
+          found.back() += "; further ones are left out";
+          break;
+        }
       }
     }
   }
@@ -74,10 +79,10 @@ std::string TopicEnd::mismatch(std::int32_t end, const Endpoint& other) const {
   const std::string who =
       fmt::format("{}: a {} ", own_.topic, other.publishes ? "publisher" : "subscriber");
   if (other.type != own_.type) {
-    return fmt::format("{}has type {}, not {}", who, other.type, own_.type);
+    return fmt::format("{}has type '{}', not '{}'", who, printable(other.type), own_.type);
   }
   if (other.quality.partition != own_.quality.partition) {
-    return fmt::format("{}is in partition '{}', not '{}'", who, other.quality.partition,
+    return fmt::format("{}is in partition '{}', not '{}'", who, printable(other.quality.partition),
                        own_.quality.partition);
   }
   const Quality& offered = own_.publishes ? own_.quality : other.quality;

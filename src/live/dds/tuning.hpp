@@ -13,6 +13,7 @@ inline constexpr struct Tuning {
   std::size_t kept_bytes = 16'384;             ///< of memory, by a slot for its next message
   std::uint32_t message_bytes = 1'000'000;     ///< longer messages are neither sent nor received
   std::uint32_t least_message_bytes = 10'000;  ///< discovery's own messages have to fit
+  std::size_t most_mismatches = 8;             ///< told of a topic; others can make any number
   int participants_per_peer = 32;              ///< asked at each unicast peer, a port each
 } kTuning;
 

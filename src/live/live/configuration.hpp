@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -65,6 +66,12 @@ struct LiveSettings {
   std::optional<file::TomlNode> mavlink{};        ///< [live.mavlink], read by `autopilot`
 };
 
+/// Rows that follow the rows of a table, made while the table is replayed.
+struct FurtherRows {
+  double end_s = 0.0;                                 ///< time of the last one
+  std::function<std::optional<log::Dataset>()> next;  ///< some more; none at the end
+};
+
 /// Names and values.
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
@@ -76,6 +83,7 @@ struct Configuration {
   ModelSettings settings;
   LiveSettings live;
   std::shared_ptr<const log::Dataset> rows{};  ///< of a table to be replayed; null: messages
+  std::shared_ptr<FurtherRows> further{};      ///< null: none
 
   /// Everything besides the settings that a checkpoint must match to be resumed. Keys as in the
   /// file ("log.rate").

@@ -25,8 +25,8 @@ double parse_speed(const std::string& text) {
 Replay::Replay(const log::LogSource& source, const Configuration& configuration, double speed)
     : pace_(speed) {
   if (configuration.rows) {
-    bag_ = std::make_unique<RowReader>(*configuration.rows);
-    reach_ = RowReader::reach_of(*configuration.rows);
+    bag_ = std::make_unique<RowReader>(configuration.rows, configuration.further);
+    reach_ = RowReader::reach_of(*configuration.rows, configuration.further.get());
     return;
   }
   if (!bag::is_bag(source.path)) {

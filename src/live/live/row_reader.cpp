@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "bag/message_text.hpp"
 #include "bag/message_type.hpp"
@@ -45,39 +47,42 @@ std::string definition_of(const std::vector<std::string>& fields) {
   return text;
 }
 
-// Since the first row.
-std::int64_t stamp_ns(const log::Dataset& rows, std::size_t row) {
-  return nanoseconds(rows.times_s[row] - rows.times_s.front());
-}
-
 }  // namespace
 
-RowReader::RowReader(const log::Dataset& rows)
-    : MessageReader(bag::ReadMode::usual, rows.source),
-      rows_(rows),
-      fields_(fields_of(rows)),
+RowReader::RowReader(std::shared_ptr<const log::Dataset> rows, std::shared_ptr<FurtherRows> further)
+    : MessageReader(bag::ReadMode::usual, rows->source),
+      rows_(std::move(rows)),
+      further_(std::move(further)),
+      first_s_(rows_->times_s.front()),
+      fields_(fields_of(*rows_)),
       builder_(bag::MessageDefinitions().type(kType, definition_of(fields_))) {
-  add_topic({.name = kTopic, .type = kType, .definition = definition_of(fields_)}, rows.source);
+  add_topic({.name = kTopic, .type = kType, .definition = definition_of(fields_)}, source());
 }
 
 Place RowReader::place() const {
-  return {.file = source(), .line = 0, .field = fmt::format("row {}", next_)};
+  return {.file = source(), .line = 0, .field = fmt::format("row {}", count_)};
 }
 
 bool RowReader::step(bag::Message& message) {
   std::size_t field = 0;
-  for (const std::span<const double> values : {rows_.input(next_), rows_.target(next_)}) {
+  for (const std::span<const double> values : {rows_->input(next_), rows_->target(next_)}) {
     for (const double value : values) {
       builder_.set(fields_[field++], value);
     }
   }
-  const std::int64_t time_ns = stamp_ns(rows_, next_);
+  const std::int64_t time_ns = nanoseconds(rows_->times_s[next_] - first_s_);
   message = {.topic = 0,
              .receive_ns = time_ns,
              .publish_ns = time_ns,
-             .sequence = static_cast<std::uint32_t>(next_),
+             .sequence = count_,
              .data = builder_.bytes()};
-  ++next_;
+  ++count_;
+  if (++next_ == rows_->rows() && further_) {
+    if (std::optional<log::Dataset> next = further_->next()) {
+      rows_ = std::make_shared<const log::Dataset>(std::move(*next));
+      next_ = 0;
+    }
+  }
   return true;
 }
 
@@ -92,8 +97,9 @@ std::vector<StreamPlan::Source> RowReader::sources_of(const log::Dataset& rows) 
   return sources;
 }
 
-log::Reach RowReader::reach_of(const log::Dataset& rows) {
-  return {.origin_ns = 0, .end_s = seconds(stamp_ns(rows, rows.rows() - 1))};
+log::Reach RowReader::reach_of(const log::Dataset& rows, const FurtherRows* further) {
+  const double end_s = further == nullptr ? rows.times_s.back() : further->end_s;
+  return {.origin_ns = 0, .end_s = seconds(nanoseconds(end_s - rows.times_s.front()))};
 }
 
 }  // namespace kelpie::live

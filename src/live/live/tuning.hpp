@@ -65,6 +65,8 @@ inline constexpr struct Tuning {
   double authority_news = 0.05;  ///< of the nominal range; docs/howto/diagnosis.md
   double least_pause_s = 0.1;    ///< between checkpoints or reports of status; reference/limits.md
   double longest_pause_s = 1e6;  ///< 12 days
+  std::size_t most_events = 10;  ///< of a kind in a minute; docs/howto/live.md
+  std::size_t most_event_kinds = 1000;      ///< beyond, all others are one kind
   std::chrono::seconds between_reports{1};  ///< [s] between two healths
   std::size_t scored_samples = 600;         ///< for R² and coverage: a minute at 10 Hz
   std::size_t timed_rows = 1000;            ///< for the median and the longest delay

@@ -253,7 +253,7 @@ void TopicTransport::execute(const std::vector<std::byte>& cdr) {
     refused_.clear();
   } catch (const InputError& error) {
     refused_ =
-        fmt::format("{}: '{}' {}", topic, word.substr(0, kTuning.command_letters), error.what());
+        fmt::format("{}: '{}' {}", topic, printable(word, kTuning.command_letters), error.what());
   }
 }
 

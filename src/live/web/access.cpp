@@ -42,15 +42,21 @@ bool is_own_name(std::string_view host) {
          std::ranges::all_of(name, [](char c) { return is_digit(c) || c == '.'; });
 }
 
+// By the browser's word; programs send neither header.
+bool is_of_another_page(const AccessRequest& asked) {
+  const bool has_own_origin = asked.origin.starts_with(kScheme) && !asked.host.empty() &&
+                              std::string_view(asked.origin).substr(kScheme.size()) == asked.host;
+  const bool is_own_site = asked.site == "same-origin" || asked.site == "none";
+  return (!asked.origin.empty() && !has_own_origin) || (!asked.site.empty() && !is_own_site);
+}
+
 }  // namespace
 
 Access::Access(std::string token, std::uint16_t port)
     : token_(std::move(token)), cookie_name_(fmt::format("kelpie_{}", port)) {}
 
 AccessDecision Access::decide(const AccessRequest& asked) const {
-  if (asked.changes_state && !asked.origin.empty() &&
-      (!asked.origin.starts_with(kScheme) || asked.host.empty() ||
-       std::string_view(asked.origin).substr(kScheme.size()) != asked.host)) {
+  if (asked.changes_state && is_of_another_page(asked)) {
     return AccessDecision::foreign_page;
   }
   if (token_.empty()) {

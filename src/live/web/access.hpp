@@ -12,6 +12,7 @@ struct AccessRequest {
   bool changes_state = false;   ///< a button, not a look
   std::string host{};           ///< header Host
   std::string origin{};         ///< header Origin: the sending page
+  std::string site{};           ///< header Sec-Fetch-Site: the sending page beside this one
   std::string token{};          ///< of the query
   std::string cookie{};         ///< header Cookie
   std::string authorization{};  ///< header Authorization

@@ -284,6 +284,7 @@ std::optional<Answer> Server::Http::refused(MHD_Connection* connection, std::str
       parts_.access.decide({.changes_state = !is_look(method),
                             .host = header(connection, MHD_HTTP_HEADER_HOST),
                             .origin = header(connection, MHD_HTTP_HEADER_ORIGIN),
+                            .site = header(connection, "Sec-Fetch-Site"),
                             .token = value_of(connection, MHD_GET_ARGUMENT_KIND, "token"),
                             .cookie = header(connection, MHD_HTTP_HEADER_COOKIE),
                             .authorization = header(connection, MHD_HTTP_HEADER_AUTHORIZATION)})) {

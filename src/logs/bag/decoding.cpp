@@ -17,7 +17,6 @@ namespace kelpie::bag {
 namespace {
 
 constexpr std::int64_t kMicrosecondNs = 1'000;
-constexpr std::int64_t kMostWrapped = std::int64_t{1} << 40;  // in ms it still fits, in ns
 
 template <MessageDialect dialect>
 MessageType text_type_of(const Topic& topic, const MessageDefinitions& definitions) {
@@ -106,19 +105,6 @@ bool StampReader::wants(std::size_t leaf) const {
   return std::ranges::any_of(parts_, [&](const Part& one) { return one.part.leaf == leaf; });
 }
 
-// A counter that goes back from elsewhere than its end has been set: the sender began anew.
-void StampReader::count_on(Part& one, std::int64_t count) {
-  const std::int64_t margin = kTuning.wrap_margin_ns / one.part.unit_ns;
-  const auto is_late = [&](std::int64_t value) { return value > one.wraps_at - margin; };
-  if (is_late(one.value) && count < margin && one.wrapped < kMostWrapped) {
-    one.wrapped += one.wraps_at;
-  } else if (is_late(count) && one.value < margin && one.wrapped > 0) {
-    one.wrapped -= one.wraps_at;  // came late, from before it began anew
-  } else if (count < one.value - margin) {
-    one.wrapped = 0;
-  }
-}
-
 void StampReader::number(std::size_t leaf, double value) {
   for (Part& one : parts_) {
     if (one.part.leaf != leaf) {
@@ -128,11 +114,7 @@ void StampReader::number(std::size_t leaf, double value) {
           static_cast<double>(Message::kLatestNs))) {
       throw InputError(one.path, "is not a time before the year 2116");
     }
-    const auto count = static_cast<std::int64_t>(value);
-    if (one.wraps_at > 0) {
-      count_on(one, count);
-    }
-    one.value = count;
+    one.value = static_cast<std::int64_t>(value);
   }
 }
 
@@ -144,8 +126,12 @@ std::int64_t StampReader::time_ns() const {
   return time_ns;
 }
 
-bool StampReader::overflows() const {
-  return parts_.size() == 1 && parts_[0].wraps_at > 0 && parts_[0].part.unit_ns <= kMicrosecondNs;
+bool StampReader::wraps() const {
+  return parts_.size() == 1 && parts_[0].wraps_at > 0;
+}
+
+bool StampReader::wraps_soon() const {
+  return wraps() && parts_[0].part.unit_ns <= kMicrosecondNs;
 }
 
 void StampReader::place(std::int64_t near_ns) {
@@ -154,7 +140,6 @@ void StampReader::place(std::int64_t near_ns) {
   const auto left = static_cast<double>(count - one.value);
   const double overflows = std::round(left / static_cast<double>(one.wraps_at));
   one.wrapped = one.wraps_at * static_cast<std::int64_t>(std::fmax(overflows, 0.0));
-  is_placed_ = true;
 }
 
 }  // namespace kelpie::bag

@@ -80,15 +80,13 @@ class StampReader {
   /// A message's number, of any leaf. Throws InputError (field) on a time beyond
   /// Message::kLatestNs.
   void number(std::size_t leaf, double value);
-  /// Stamp of the last message. Counters of 32 bits that overflow (after 71 minutes in µs) are
-  /// continued.
+  /// Stamp of the last message, with the overflows of the last place().
   std::int64_t time_ns() const;
-  /// Whether the stamp is such a counter of µs: the overflows before its first message are unknown.
-  bool overflows() const;
-  /// Adds overflows to the last stamp and later ones, so that the last stamp is nearest to
-  /// `near_ns`. Requires overflows().
+  /// Whether the stamp is a counter of 32 bits, which overflows: after 49.7 days in ms, and
+  bool wraps() const;
+  bool wraps_soon() const;  ///< … after 71.6 minutes in µs.
+  /// Adds overflows to the last stamp, so that the stamp is nearest to `near_ns`. Requires wraps().
   void place(std::int64_t near_ns);
-  bool is_placed() const { return is_placed_; }  ///< by place()
 
  private:
   struct Part {
@@ -98,10 +96,8 @@ class StampReader {
     std::int64_t value = 0;
     std::int64_t wrapped = 0;
   };
-  static void count_on(Part& one, std::int64_t count);
 
   std::vector<Part> parts_;
-  bool is_placed_ = false;
 };
 
 }  // namespace kelpie::bag

@@ -8,6 +8,7 @@
 
 #include "bag/autopilot_state.hpp"
 #include "bag/decoding.hpp"
+#include "bag/sender_times.hpp"
 #include "bag/statistics.hpp"
 #include "core/quantile.hpp"
 #include "core/seconds.hpp"
@@ -63,9 +64,10 @@ class TopicInspector final : public NumberVisitor {
     leaves_.resize(decoder_.type().leaves.size());
   }
 
-  void add(MessageReader& bag, const Message& message) {
+  void add(MessageReader& bag, const Message& message, SenderTimes& times) {
     received_ns_.push_back(message.receive_ns);
-    if (is_decoded_ && decode(bag, message, decoder_, *this) && stamp_.exists()) {
+    if (is_decoded_ && decode(bag, message, decoder_, *this) && stamp_.exists() &&
+        times.settle(report_.name, message.receive_ns, stamp_)) {
       offsets_s_.push_back(seconds(message.receive_ns - stamp_.time_ns()));
     }
   }
@@ -131,6 +133,7 @@ Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions,
                    AutopilotReport& report) {
   Inspectors topics;
   AutopilotState autopilot;
+  SenderTimes times;
   std::int64_t before_ns = 0;
   const auto meet_topics = [&] {
     for (std::size_t k = topics.size(); k < bag.topics().size(); ++k) {
@@ -139,7 +142,7 @@ Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions,
   };
   for (Message message; bag.next(message);) {
     meet_topics();
-    topics[message.topic]->add(bag, message);
+    topics[message.topic]->add(bag, message, times);
     autopilot.hear(bag.topics(), message);
     if (before_ns > 0 && message.receive_ns > before_ns && !autopilot.is_disarmed()) {
       report.armed_s += seconds(message.receive_ns - before_ns);

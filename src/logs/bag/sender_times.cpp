@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/sender_times.hpp"
 
+#include <cstdlib>
+
 #include "bag/tuning.hpp"
 #include "mavlink/definition.hpp"
 
@@ -34,22 +36,32 @@ void SenderTimes::expect(const std::string& topic) {
 }
 
 bool SenderTimes::settle(std::string_view topic, std::int64_t receive_ns, StampReader& stamp) {
-  if (!stamp.exists() || stamp.is_placed()) {
+  if (!stamp.exists()) {
     return true;
   }
   Sender& sender = sender_of(topic);
-  if (!stamp.overflows()) {
-    if (stamp.time_ns() < kTuning.longest_uptime_ns) {  // else a date
-      sender.booted_ns = receive_ns - stamp.time_ns();
+  if (stamp.wraps() && !goes_on(sender, receive_ns, stamp)) {
+    sender.untimed_ns = sender.untimed_ns.value_or(receive_ns);
+    if (stamp.wraps_soon() && sender.is_expected &&
+        receive_ns - *sender.untimed_ns <= kTuning.longest_untimed_ns) {
+      return false;
     }
-    return true;
+    stamp.place(0);
   }
-  if (sender.booted_ns) {
-    stamp.place(receive_ns - *sender.booted_ns);
-    return true;
+  if (stamp.time_ns() < kTuning.longest_uptime_ns) {  // else a date
+    sender.booted_ns = receive_ns - stamp.time_ns();
+    sender.untimed_ns.reset();
   }
-  sender.untimed_ns = sender.untimed_ns.value_or(receive_ns);
-  return !sender.is_expected || receive_ns - *sender.untimed_ns > kTuning.longest_untimed_ns;
+  return true;
+}
+
+bool SenderTimes::goes_on(const Sender& sender, std::int64_t receive_ns, StampReader& stamp) {
+  if (!sender.booted_ns) {
+    return false;
+  }
+  const std::int64_t near_ns = receive_ns - *sender.booted_ns;
+  stamp.place(near_ns);
+  return std::abs(stamp.time_ns() - near_ns) <= kTuning.wrap_margin_ns;
 }
 
 }  // namespace kelpie::bag

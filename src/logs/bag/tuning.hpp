@@ -29,7 +29,7 @@ inline constexpr struct Tuning {
   int zstd_level = 3;                ///< zstd's own default
 
   // Clocks.
-  std::int64_t wrap_margin_ns = 60'000'000'000;  ///< around the end of a 32-bit counter; by hand
+  std::int64_t wrap_margin_ns = 60'000'000'000;  ///< until a sender has begun anew; by hand
   std::int64_t longest_uptime_ns = 100'000'000'000'000'000;  ///< of a sender: 3 years; by hand
   std::int64_t longest_untimed_ns = 5'000'000'000;  ///< wait for a sender's uptime; by hand
   std::int64_t between_logs_ns = 60'000'000'000;    ///< between two logs in a .BIN file; by hand

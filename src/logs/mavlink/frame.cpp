@@ -14,25 +14,20 @@ std::uint16_t with_extra(std::uint16_t crc, unsigned extra) {
   return checksum(std::span(&byte, 1), crc);
 }
 
-bool is_right_for_some(std::uint16_t crc, std::uint16_t stated) {
-  for (unsigned extra = 0; extra < 256; ++extra) {
-    if (with_extra(crc, extra) == stated) {
-      return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 FrameState read_frame(const FrameHead& head, Frame& frame) {
+  return read_frame(head, checksum(head.checked()), frame);
+}
+
+FrameState read_frame(const FrameHead& head, std::uint16_t crc, Frame& frame) {
   const Definition* const definition = find_definition(head.id());
-  const std::uint16_t crc = checksum(head.checked());
-  const std::uint16_t stated = head.stated_checksum();
-  const bool is_defined = definition != nullptr && !head.is_of_later_version() &&
-                          (head.is_second() || head.payload_bytes() >= definition->basic_bytes);
-  if (!is_defined || with_extra(crc, definition->crc_extra) != stated) {
-    return is_right_for_some(crc, stated) ? FrameState::unknown : FrameState::damaged;
+  if (definition == nullptr || head.is_of_later_version()) {
+    return FrameState::unknown;
+  }
+  const bool has_all = head.is_second() || head.payload_bytes() >= definition->basic_bytes;
+  if (!has_all || with_extra(crc, definition->crc_extra) != head.stated_checksum()) {
+    return FrameState::damaged;
   }
   frame = {.definition = definition,
            .system = head.system(),

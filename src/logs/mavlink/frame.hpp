@@ -82,13 +82,14 @@ class FrameHead {
 /// Result of checking a frame.
 enum class FrameState : std::uint8_t {
   sound,    ///< the checksum is right
-  unknown,  ///< unknown definition: the checksum is right for another definition
-  damaged,
+  unknown,  ///< of a message or version without a definition here: the checksum cannot be checked
+  damaged,  ///< or of another definition
 };
 
 /// Requires head.is_whole(). Fills in `frame` for a sound frame; the payload points into the given
-/// bytes. The definition enters the checksum by one byte, so that 1 of 256 damaged frames is taken
-/// as unknown. Fields added by a sender's later definition are left out of the payload.
+/// bytes. Fields added by a sender's later definition are left out of the payload.
 FrameState read_frame(const FrameHead& head, Frame& frame);
+/// The same, by the checksum() of head.checked().
+FrameState read_frame(const FrameHead& head, std::uint16_t crc, Frame& frame);
 
 }  // namespace kelpie::mavlink

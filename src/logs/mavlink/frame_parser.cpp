@@ -8,13 +8,17 @@ namespace {
 
 // A sequence number has a byte: what is further ahead came late, twice, or after a start anew.
 constexpr int kMostMissing = 128;
+constexpr std::size_t kPassed = static_cast<std::size_t>(-1);
 
 }  // namespace
 
 void FrameParser::add(std::span<const std::byte> bytes) {
+  due_ = at_ == bytes_.size() ? 0 : due_ < at_ ? kPassed : due_ - at_;
   bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(at_));
+  checksum_.drop(at_);
   at_ = 0;
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  checksum_.add(bytes);
 }
 
 bool FrameParser::next(Frame& frame) {
@@ -45,13 +49,15 @@ bool FrameParser::next(Frame& frame) {
 std::size_t FrameParser::accept(std::span<const std::byte> bytes, const FrameHead& head,
                                 Frame& frame) {
   const std::size_t end = head.frame_bytes();
-  switch (read_frame(head, frame)) {
+  const bool is_due = at_ == due_;
+  due_ = is_due ? at_ + end : due_;
+  switch (read_frame(head, checksum_.of(at_ + 1, head.checked().size()), frame)) {
     case FrameState::damaged:
       ++counts_.bad_checksum;
       return 1;  // the next frame may begin anywhere
     case FrameState::unknown:
-      // It was another byte that happened to be the magic one, where no frame follows.
-      if (bytes.size() > end && !is_magic(bytes[end])) {
+      // It was another byte that happened to be the magic one, where no frame is due or follows.
+      if (!is_due || (bytes.size() > end && !is_magic(bytes[end]))) {
         ++counts_.skipped_bytes;
         return 1;
       }
@@ -59,6 +65,7 @@ std::size_t FrameParser::accept(std::span<const std::byte> bytes, const FrameHea
       break;
     case FrameState::sound:
       ++counts_.frames;
+      due_ = at_ + end;
   }
   count_lost(head);
   return end;

@@ -8,20 +8,23 @@
 #include <utility>
 #include <vector>
 
+#include "mavlink/checksum.hpp"
 #include "mavlink/frame.hpp"
 
 namespace kelpie::mavlink {
 
 /// Finds MAVLink 1 and 2 frames in a stream of bytes from a serial line, datagrams or a file, with
 /// arbitrary bytes between frames. Skips messages outside of definitions(), or with another
-/// definition. Keeps at most the bytes of a frame besides the added bytes.
+/// definition: the first where the last frame ended, any byte may begin the others. Keeps at most
+/// the bytes of a frame besides the added bytes. The work is in proportion to the bytes, whatever
+/// the bytes are (RunningChecksum).
 class FrameParser {
  public:
   /// Counts since the start.
   struct Counts {
     std::uint64_t frames = 0;         ///< given
-    std::uint64_t unknown = 0;        ///< frames without known definition
-    std::uint64_t bad_checksum = 0;   ///< apparent frames that were damaged
+    std::uint64_t unknown = 0;        ///< without known definition, where a frame is due
+    std::uint64_t bad_checksum = 0;   ///< apparent frames, damaged or of another definition
     std::uint64_t skipped_bytes = 0;  ///< outside of frames
     std::uint64_t lost = 0;  ///< messages missing between sequence numbers, over all systems
   };
@@ -43,7 +46,9 @@ class FrameParser {
   void count_lost(const FrameHead& head);
 
   std::vector<std::byte> bytes_;
+  RunningChecksum checksum_;  ///< of bytes_
   std::size_t at_ = 0;
+  std::size_t due_ = 0;  ///< where the frame behind the last one begins
   /// The last sequence number of a system's component.
   std::map<std::pair<std::uint8_t, std::uint8_t>, std::uint8_t> sequences_;
   Counts counts_;

@@ -96,32 +96,25 @@ Eigen::Vector3d SixAxisSensors::measure_attitude(const Eigen::Vector3d& angles_r
 }
 
 template <int axes>
-std::vector<Eigen::Matrix<double, axes, 1>> smoothed_slopes(
-    std::span<const Eigen::Matrix<double, axes, 1>> measurements, double period_s,
-    double half_window_s) {
+Eigen::Matrix<double, axes, 1> smoothed_slope(
+    std::span<const Eigen::Matrix<double, axes, 1>> measurements, std::size_t at, std::size_t half,
+    double period_s) {
   using Measurement = Eigen::Matrix<double, axes, 1>;
-  const auto count = static_cast<std::ptrdiff_t>(measurements.size());
-  const auto half = std::max<std::ptrdiff_t>(1, std::lround(half_window_s / period_s));
-  std::vector<Measurement> slopes;
-  slopes.reserve(measurements.size());
-  for (std::ptrdiff_t row = 0; row < count; ++row) {
-    const std::ptrdiff_t first = std::max<std::ptrdiff_t>(0, row - half);
-    const std::ptrdiff_t last = std::min(count - 1, row + half);
-    const double middle = 0.5 * static_cast<double>(first + last);
-    Measurement weighted = Measurement::Zero();
-    double squares = 0.0;
-    for (std::ptrdiff_t i = first; i <= last; ++i) {
-      const double offset_s = (static_cast<double>(i) - middle) * period_s;
-      weighted += offset_s * measurements[static_cast<std::size_t>(i)];
-      squares += offset_s * offset_s;
-    }
-    slopes.emplace_back(weighted / squares);
+  const std::size_t first = at - std::min(at, half);
+  const std::size_t last = std::min(measurements.size() - 1, at + half);
+  const double middle = 0.5 * static_cast<double>(first + last);
+  Measurement weighted = Measurement::Zero();
+  double squares = 0.0;
+  for (std::size_t i = first; i <= last; ++i) {
+    const double offset_s = (static_cast<double>(i) - middle) * period_s;
+    weighted += offset_s * measurements[i];
+    squares += offset_s * offset_s;
   }
-  return slopes;
+  return weighted / squares;
 }
 
-template std::vector<Eigen::Vector3d> smoothed_slopes<3>(std::span<const Eigen::Vector3d>, double,
-                                                         double);
-template std::vector<Vector6> smoothed_slopes<6>(std::span<const Vector6>, double, double);
+template Eigen::Vector3d smoothed_slope<3>(std::span<const Eigen::Vector3d>, std::size_t,
+                                           std::size_t, double);
+template Vector6 smoothed_slope<6>(std::span<const Vector6>, std::size_t, std::size_t, double);
 
 }  // namespace kelpie::simulator

@@ -60,18 +60,19 @@ class SixAxisSensors {
   double rate_white_, attitude_white_;
 };
 
-/// Accelerations from evenly spaced measurements, as a differentiating navigation filter gives
-/// them: at every measurement the slope per second of the least-squares line through the
-/// measurements within `half_window_s` on either side (fewer at the ends, at least the two
-/// neighbours). A filter of fixed lag works like this, and the real log shows no lag. Requires at
-/// least two measurements.
+/// Acceleration from evenly spaced measurements, as a differentiating navigation filter gives it:
+/// at measurement `at` the slope per second of the least-squares line through the measurements up
+/// to `half` on either side (fewer at the ends). A filter of fixed lag works like this, and the
+/// real log shows no lag. Requires at least two measurements, at < measurements.size() and half
+/// >= 1.
 template <int axes>
-std::vector<Eigen::Matrix<double, axes, 1>> smoothed_slopes(
-    std::span<const Eigen::Matrix<double, axes, 1>> measurements, double period_s,
-    double half_window_s);
+Eigen::Matrix<double, axes, 1> smoothed_slope(
+    std::span<const Eigen::Matrix<double, axes, 1>> measurements, std::size_t at, std::size_t half,
+    double period_s);
 
-extern template std::vector<Eigen::Vector3d> smoothed_slopes<3>(std::span<const Eigen::Vector3d>,
-                                                                double, double);
-extern template std::vector<Vector6> smoothed_slopes<6>(std::span<const Vector6>, double, double);
+extern template Eigen::Vector3d smoothed_slope<3>(std::span<const Eigen::Vector3d>, std::size_t,
+                                                  std::size_t, double);
+extern template Vector6 smoothed_slope<6>(std::span<const Vector6>, std::size_t, std::size_t,
+                                          double);
 
 }  // namespace kelpie::simulator

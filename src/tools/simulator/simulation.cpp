@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -51,33 +53,46 @@ class Mission {
     }
   }
 
-  void drive(std::size_t index) {
-    const Phase& phase = scenario_.phases[index];
-    const Plant to = plant_of(phase);
-    const Plant from = index > 0 ? plant_of(scenario_.phases[index - 1]) : to;
-    const std::int64_t ticks = ticks_in(phase.duration_s);
-    const std::int64_t ramp_ticks = std::llround(phase.ramp_s * kTicksPerSecond);
-    simulator_.set_plant(ramp_ticks > 0 ? from : to);
-    watcher_.begin(phase);
-    for (std::int64_t tick = 0; tick < ticks; ++tick) {
-      if (tick < ramp_ticks) {
-        simulator_.set_plant(
-            blend(from, to, static_cast<double>(tick + 1) / static_cast<double>(ramp_ticks)));
+  // Drives for a tick. False at the end.
+  bool step() {
+    while (next_phase_ == 0 || phase_tick_ == phase_ticks_) {
+      if (next_phase_ == scenario_.phases.size()) {
+        return false;
       }
-      advance(phase.amplitude);
-      watcher_.record(phase.configuration);
-      ++ticks_;
-      if (progress_ && (ticks_ % kProgressTicks == 0 || ticks_ == all_ticks_)) {
-        progress_(static_cast<double>(ticks_) / static_cast<double>(all_ticks_));
-      }
+      begin_phase();
     }
+    const Phase& phase = scenario_.phases[next_phase_ - 1];
+    ++phase_tick_;
+    if (phase_tick_ <= ramp_ticks_) {
+      simulator_.set_plant(
+          blend(from_, to_, static_cast<double>(phase_tick_) / static_cast<double>(ramp_ticks_)));
+    }
+    advance(phase.amplitude);
+    watcher_.record(phase.configuration);
+    ++ticks_;
+    if (progress_ && (ticks_ % kProgressTicks == 0 || ticks_ == all_ticks_)) {
+      progress_(static_cast<double>(ticks_) / static_cast<double>(all_ticks_));
+    }
+    return true;
   }
 
-  auto finish() && { return std::move(watcher_).finish(); }
+  Watcher& watcher() { return watcher_; }
 
  private:
   Plant plant_of(const Phase& phase) const {
     return make_plant(scenario_.vehicle, scenario_.configurations[phase.configuration]);
+  }
+
+  void begin_phase() {
+    const Phase& phase = scenario_.phases[next_phase_];
+    to_ = plant_of(phase);
+    from_ = next_phase_ > 0 ? plant_of(scenario_.phases[next_phase_ - 1]) : to_;
+    phase_ticks_ = ticks_in(phase.duration_s);
+    ramp_ticks_ = std::llround(phase.ramp_s * kTicksPerSecond);
+    simulator_.set_plant(ramp_ticks_ > 0 ? from_ : to_);
+    watcher_.begin(phase);
+    phase_tick_ = 0;
+    ++next_phase_;
   }
 
   void advance(double amplitude) {
@@ -89,13 +104,16 @@ class Mission {
   }
 
   const Scenario& scenario_;
-  const Progress& progress_;
+  Progress progress_;
   std::int64_t all_ticks_;
   std::optional<Excitation> excitation_;
   std::optional<Pilot> pilot_;
   Simulator simulator_;
   Watcher watcher_;
   std::int64_t ticks_ = 0;
+  std::size_t next_phase_ = 0;
+  Plant from_, to_;  // of the present phase, as the members below
+  std::int64_t phase_tick_ = 0, phase_ticks_ = 0, ramp_ticks_ = 0;
 };
 
 // Rows at their rate, of velocities that are measured at the sensors' rate. `Kind` tells how a
@@ -108,6 +126,7 @@ class Recorder {
         simulator_(simulator),
         row_ticks_(ticks_in(1.0 / scenario.rate_hz)),
         sensor_ticks_(sensor_ticks(row_ticks_)),
+        half_(static_cast<std::size_t>(std::max(1L, std::lround(Kind::kHalfWindowS / period_s())))),
         sensors_(scenario.noise, scenario.seed) {
     measure();
   }
@@ -127,28 +146,33 @@ class Recorder {
     }
   }
 
-  std::vector<typename Kind::Row> finish() && {
-    const double period_s = static_cast<double>(sensor_ticks_) * kTickS;
-    const std::vector<typename Kind::Velocity> slopes =
-        smoothed_slopes<Kind::Velocity::RowsAtCompileTime>(measurements_, period_s,
-                                                           Kind::kHalfWindowS);
-    const auto per_row = static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
-      rows_[row].acceleration = slopes[(row + 1) * per_row];
+  // The oldest row, once all measurements of its acceleration are there, or `is_end`.
+  std::optional<typename Kind::Row> next(bool is_end) {
+    const std::size_t at = (given_ + 1) * static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
+    if (rows_.empty() || (!is_end && at + half_ >= measurements_.size())) {
+      return std::nullopt;
     }
-    return std::move(rows_);
+    typename Kind::Row row = std::move(rows_.front());
+    rows_.pop_front();
+    ++given_;
+    row.acceleration =
+        smoothed_slope<Kind::Velocity::RowsAtCompileTime>(measurements_, at, half_, period_s());
+    return row;
   }
 
  private:
+  double period_s() const { return static_cast<double>(sensor_ticks_) * kTickS; }
   void measure() { measurements_.push_back(sensors_.measure(Kind::velocity(simulator_))); }
 
   const Scenario& scenario_;
   const Simulator& simulator_;
   std::int64_t row_ticks_, sensor_ticks_;
+  std::size_t half_;  // measurements of a window
   typename Kind::Sensors sensors_;
   std::int64_t ticks_ = 0;
   std::vector<typename Kind::Velocity> measurements_;
-  std::vector<typename Kind::Row> rows_;
+  std::deque<typename Kind::Row> rows_;
+  std::size_t given_ = 0;
 };
 
 struct InPlane {
@@ -191,14 +215,39 @@ struct OnSixAxes {
   }
 };
 
+const Scenario& validated(const Scenario& scenario) {
+  scenario.validate();
+  return scenario;
+}
+
+template <typename Kind>
+class Drive {
+ public:
+  Drive(const Scenario& scenario, const Progress& progress)
+      : mission_(validated(scenario), progress) {}
+
+  std::optional<typename Kind::Row> next() {
+    std::optional<typename Kind::Row> row = mission_.watcher().next(is_over_);
+    while (!row && !is_over_) {
+      is_over_ = !mission_.step();
+      row = mission_.watcher().next(is_over_);
+    }
+    return row;
+  }
+
+ private:
+  Mission<Recorder<Kind>> mission_;
+  bool is_over_ = false;
+};
+
 template <typename Kind>
 auto recorded(const Scenario& scenario, const Progress& progress) {
-  scenario.validate();
-  Mission<Recorder<Kind>> mission(scenario, progress);
-  for (std::size_t phase = 0; phase < scenario.phases.size(); ++phase) {
-    mission.drive(phase);
+  std::vector<typename Kind::Row> rows;
+  Drive<Kind> drive(scenario, progress);
+  while (auto row = drive.next()) {
+    rows.push_back(std::move(*row));
   }
-  return std::move(mission).finish();
+  return rows;
 }
 
 }  // namespace
@@ -214,6 +263,13 @@ SixAxisRow six_axis_row(const Simulator& simulator, CommandUnit unit, const Vect
           .voltage_v = simulator.voltage_v(),
           .acceleration = Vector6::Zero(),
           .true_acceleration = Vector6::Zero()};
+}
+
+RowSource drive_in_plane(Scenario scenario) {
+  require_plane(scenario.vehicle);
+  const auto driven = std::make_shared<const Scenario>(std::move(scenario));
+  const auto drive = std::make_shared<Drive<InPlane>>(*driven, Progress());
+  return [driven, drive] { return drive->next(); };
 }
 
 std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress) {

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "simulator/scenario.hpp"
@@ -50,8 +51,15 @@ using Progress = std::function<void(double share)>;
 /// Simulator::advance() do.
 std::vector<LogRow> simulate(const Scenario& scenario, const Progress& progress = {});
 
-/// The same for a log of six axes. Commands are those of the tick that ends at the row, before
-/// delay, dead band and lag.
+/// The rows of a drive, one at a time; none at the end.
+using RowSource = std::function<std::optional<LogRow>()>;
+
+/// The rows of simulate(), each as soon as its acceleration is known. Throws as simulate() does, in
+/// this function and in the source.
+RowSource drive_in_plane(Scenario scenario);
+
+/// The same as simulate() for a log of six axes. Commands are those of the tick that ends at the
+/// row, before delay, dead band and lag.
 std::vector<SixAxisRow> simulate_six_axes(const Scenario& scenario, const Progress& progress = {});
 
 }  // namespace kelpie::simulator

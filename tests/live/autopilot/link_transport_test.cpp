@@ -80,8 +80,11 @@ class VehicleLine final : public autopilot::ByteLine {
 
 class Link : public ::testing::Test {
  protected:
-  void open(const std::string& mavlink = "", const std::string& log = "") {
-    testing::write_text(folder_ / "x.toml", rov_config(mavlink, "", log));
+  void open(const std::string& mavlink = "", const std::string& log = "",
+            const std::string& velocity = "ODOMETRY:vx") {
+    std::string text = rov_config(mavlink, "", log);
+    text.replace(text.find("ODOMETRY:vx"), std::string("ODOMETRY:vx").size(), velocity);
+    testing::write_text(folder_ / "x.toml", text);
     configuration_ = live::read_configuration(folder_ / "x.toml", {});
     auto line = std::make_unique<VehicleLine>(rov_);
     line_ = line.get();
@@ -107,10 +110,13 @@ class Link : public ::testing::Test {
   }
 
   // Of whole rows within 10 s of the vehicle's time.
-  std::vector<double> pulses_of_rows() {
+  std::vector<double> pulses_of_rows(double boots_s = 20.0) {
     live::Receiver receiver(configuration_, std::nullopt);
     std::vector<double> pulses;
     for (int second = 0; second < 10; ++second) {
+      if (second == boots_s) {
+        rov_.restart();
+      }
       rov_.go(1.0, [&](auto bytes) { line_->add(bytes); });
       for (bag::Message message;;) {
         if (link_->next(message, milliseconds(2)) == Got::message) {
@@ -181,15 +187,34 @@ TEST_F(Link, ALearnerMirrorsAReversedMotorOnceItsDirectionIsTold) {
   EXPECT_NEAR(mirrored_high, 3000.0 - low, 20.0);
 }
 
-// Its pulses count µs with 32 bits, which begin anew after 71.6 minutes.
-TEST_F(Link, AVehicleThatHasBeenUpForHoursIsLearnedAsWell) {
-  open();
-  const std::size_t rows = pulses_of_rows().size();
-  ASSERT_GT(rows, 60U);
-  rov_ = Rov(7);
-  rov_.be_up(2.0 * 3600.0);
-  open();
-  EXPECT_NEAR(static_cast<double>(pulses_of_rows().size()), static_cast<double>(rows), 5.0);
+// Its pulses count µs with 32 bits, which begin anew after 71.6 minutes, its velocities ms, which
+// do so after 49.7 days. A boot costs the rows of some seconds.
+TEST_F(Link, AVehicleThatHasBeenUpForHoursOrWeeksIsLearnedAsWell) {
+  constexpr double kUs_s = 4'294.967296;
+  struct Case {
+    double up_s;
+    double boots_s;  ///< after so much of 10 s
+  };
+  for (const std::string velocity : {"ODOMETRY:vx", "LOCAL_POSITION_NED:vx"}) {
+    const auto rows_of = [&](const Case& one) {
+      rov_ = Rov(7);
+      rov_.be_up(one.up_s);
+      open("", "", velocity);
+      return static_cast<double>(pulses_of_rows(one.boots_s).size());
+    };
+    const double rows = rows_of({0.0, 20.0});
+    ASSERT_GT(rows, 60.0);
+    for (const Case& one : {Case{7'200.0, 20.0}, Case{260 * kUs_s - 5.0, 20.0},
+                            Case{1'000 * kUs_s - 5.0, 20.0}, Case{1'010 * kUs_s - 5.0, 20.0}}) {
+      EXPECT_NEAR(rows_of(one), rows, 5.0) << velocity << " " << one.up_s;
+    }
+    const double rows_after_boot = rows_of({200.0, 6.0});
+    ASSERT_GT(rows_after_boot, 40.0);
+    for (const Case& one :
+         {Case{7'200.0, 6.0}, Case{260 * kUs_s - 3.0, 6.0}, Case{1'000 * kUs_s - 3.0, 6.0}}) {
+      EXPECT_NEAR(rows_of(one), rows_after_boot, 5.0) << velocity << " " << one.up_s;
+    }
+  }
 }
 
 // What an autopilot tells while nobody knows whether it is the vehicle is passed on to nobody.

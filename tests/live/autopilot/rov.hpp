@@ -36,14 +36,14 @@ class Rov {
         send(heartbeat_of_vehicle(writer_, is_armed));
       }
       if (is_due(rates_hz["ATTITUDE"])) {
-        writer_.begin("ATTITUDE").set("time_boot_ms", std::round(1e3 * t_s_));
+        writer_.begin("ATTITUDE").set("time_boot_ms", of_32_bits(1e3 * t_s_));
         for (const char* const field : {"roll", "rollspeed", "pitch", "pitchspeed", "yawspeed"}) {
           writer_.set(field, 0.1 * std::sin(t_s_ + static_cast<double>(field[0])));
         }
         send(writer_.finish());
       }
       if (is_due(rates_hz["LOCAL_POSITION_NED"])) {
-        writer_.begin("LOCAL_POSITION_NED").set("time_boot_ms", std::round(1e3 * t_s_));
+        writer_.begin("LOCAL_POSITION_NED").set("time_boot_ms", of_32_bits(1e3 * t_s_));
         send(writer_.set("vx", u_).set("vy", 0.5 * u_).set("vz", 0.1 * u_).finish());
       }
       if (is_due(rates_hz["ODOMETRY"])) {
@@ -51,9 +51,7 @@ class Rov {
         send(writer_.set("q", 1.0).finish());
       }
       if (is_due(rates_hz["SERVO_OUTPUT_RAW"])) {
-        constexpr double kWrap = 4'294'967'296.0;  // the field has 32 bits
-        writer_.begin("SERVO_OUTPUT_RAW");
-        writer_.set("time_usec", std::fmod(std::round(1e6 * t_s_), kWrap));
+        writer_.begin("SERVO_OUTPUT_RAW").set("time_usec", of_32_bits(1e6 * t_s_));
         send(writer_.set("servo1_raw", std::round(1500.0 + 40.0 * n)).finish());
       }
     }
@@ -125,6 +123,8 @@ class Rov {
 
  private:
   static constexpr double kStep = 0.005;
+
+  static double of_32_bits(double count) { return std::fmod(std::round(count), 4'294'967'296.0); }
 
   bool is_due(double rate_hz) const {
     return std::floor(t_s_ * rate_hz) > std::floor((t_s_ - kStep) * rate_hz);

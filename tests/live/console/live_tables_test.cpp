@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/running.hpp"
+#include "console/demo.hpp"
 #include "console/live_command.hpp"
 #include "live/mission.hpp"
 #include "support.hpp"
@@ -103,6 +104,18 @@ TEST_F(LiveCommand, TheDemonstrationEndsAfterItsDurationWithTheThrusterThatWasDa
       << outcome.err;
   EXPECT_NE(outcome.out.find("6000 samples learned"), std::string::npos) << outcome.out;
   EXPECT_FALSE(model_of("out/demo").empty());
+}
+
+// The drive of a day is simulated as it goes, so that its first rows are learned at once.
+TEST_F(LiveCommand, ADemonstrationOfADayBeginsAtOnce) {
+  const live::Configuration day = cli::demo_configuration(86'400.0, "", {});
+  EXPECT_EQ(day.rows->rows(), 100U);
+  const live::Configuration short_one = cli::demo_configuration(20.0, "", {});
+  const std::optional<log::Dataset> next = short_one.further->next();
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->rows(), 100U);
+  EXPECT_EQ(next->times_s.front(), 10.1);
+  EXPECT_FALSE(short_one.further->next());
 }
 
 TEST_F(LiveCommand, TheDemonstrationEndsByCtrlC) {

@@ -129,8 +129,8 @@ TEST_P(Exchange, WhatDoesNotMatchIsSaid) {
             std::vector<std::string>{"/odom: a publisher offers best effort, while reliable is "
                                      "asked for here (reliability)"});
   EXPECT_EQ(twist.mismatches(),
-            std::vector<std::string>{"/odom: a publisher has type nav_msgs/msg/Odometry, not "
-                                     "geometry_msgs/msg/TwistStamped"});
+            std::vector<std::string>{"/odom: a publisher has type 'nav_msgs/msg/Odometry', not "
+                                     "'geometry_msgs/msg/TwistStamped'"});
   EXPECT_EQ(accel.mismatches(),
             std::vector<std::string>{"/accel: a subscriber asks for reliable, while best effort is "
                                      "offered here (reliability)"});
@@ -166,6 +166,28 @@ TEST_P(Exchange, AnotherPartitionIsSaidAndTheSameOneConnects) {
   EXPECT_EQ(odometry.mismatches().front(), "/odom: a publisher is in partition '', not 'dagon'");
   const dds::Publication same(participant, "/odom", "nav_msgs/msg/Odometry", apart);
   EXPECT_TRUE(eventually([&] { return odometry.publishers() == 1; }));
+}
+
+// Of many publishers some are told, each in a line of its own.
+TEST_P(Exchange, NamesOfOthersAreToldInOneShortLine) {
+  Quality apart = Quality::sensor_data();
+  apart.partition = "dagon";
+  const dds::Subscription odometry(participant, "/odom", "nav_msgs/msg/Odometry", apart, queue, 0);
+  apart.partition = "a\nkelpie: b" + std::string(20'000, 'x');
+  const dds::Publication hostile(participant, "/odom", "nav_msgs/msg/Odometry", apart);
+  ASSERT_TRUE(eventually([&] { return !odometry.mismatches().empty(); }));
+  EXPECT_EQ(odometry.mismatches(),
+            std::vector<std::string>{"/odom: a publisher is in partition 'a?kelpie: b" +
+                                     std::string(69, 'x') + "…', not 'dagon'"});
+  std::vector<std::unique_ptr<dds::Publication>> many;
+  for (int k = 0; k < 12; ++k) {
+    apart.partition = "p" + std::to_string(k);
+    many.push_back(
+        std::make_unique<dds::Publication>(participant, "/odom", "nav_msgs/msg/Odometry", apart));
+  }
+  ASSERT_TRUE(eventually([&] { return odometry.mismatches().size() >= 8; }));
+  EXPECT_EQ(odometry.mismatches().size(), 8U);
+  EXPECT_TRUE(odometry.mismatches().back().ends_with("; further ones are left out"));
 }
 
 // Its process stands still, so nothing is ever acknowledged.

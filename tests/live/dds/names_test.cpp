@@ -26,6 +26,8 @@ TEST(Names, WhatIsOnDdsWithoutRosHasNoNameThere) {
        {"rq/serviceRequest", "odom", "rt", "rt/", "rtodom", "rt//odom", "rt/odom/", "rt/a b", ""}) {
     EXPECT_EQ(dds::ros_topic_name(topic), "") << topic;
   }
+  EXPECT_EQ(dds::ros_type_name(std::string(20'000, 'a') + "::msg::dds_::B_"), "");
+  EXPECT_EQ(dds::ros_topic_name("rt/" + std::string(20'000, 'a')), "");
 }
 
 TEST(Names, WhatIsNoNameIsRefused) {

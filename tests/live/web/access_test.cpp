@@ -50,6 +50,22 @@ TEST(Access, ButtonsArePressedOnThePageItselfOrByWhoIsNoPage) {
   }
 }
 
+// A browser may say no more than this: a form of another page, at another port of this machine too.
+TEST(Access, ABrowserThatNamesAnotherSiteAsTheSenderPressesNoButton) {
+  const Access access("", 8080);
+  for (const auto& [site, decision] :
+       {std::pair("", AccessDecision::granted), std::pair("same-origin", AccessDecision::granted),
+        std::pair("none", AccessDecision::granted),
+        std::pair("cross-site", AccessDecision::foreign_page),
+        std::pair("same-site", AccessDecision::foreign_page),
+        std::pair("nonsense", AccessDecision::foreign_page)}) {
+    EXPECT_EQ(access.decide({.changes_state = true, .host = "localhost:8080", .site = site}),
+              decision)
+        << site;
+    EXPECT_EQ(access.decide({.host = "localhost:8080", .site = site}), AccessDecision::granted);
+  }
+}
+
 TEST(Access, WithATokenOnlyWhoHasItSeesAnything) {
   const Access access(kToken, 8080);
   const std::string host = "kelpie.example:8080";

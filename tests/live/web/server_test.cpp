@@ -215,6 +215,7 @@ TEST_F(WebPage, ButtonsReachTheEngine) {
     EXPECT_EQ(requests_.pop(), request);
   }
   EXPECT_EQ(client().post("/save", {{"Origin", "http://evil.example"}}).status, 403);
+  EXPECT_EQ(client().post("/save", {{"Sec-Fetch-Site", "cross-site"}}).status, 403);
   EXPECT_EQ(client().post("/save", {{"Host", "evil.example"}}).status, 403);
   EXPECT_EQ(client().get("/", {{"Host", "evil.example"}}).status, 403);
   EXPECT_EQ(requests_.pop(), std::nullopt);

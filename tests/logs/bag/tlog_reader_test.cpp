@@ -100,6 +100,64 @@ TEST(TlogReader, ACounterOfMicrosecondsThatHasBegunAnewHasTheTimeOfItsSender) {
   }
 }
 
+// While the vehicle is up for long, silent, and booted: all messages have the time since the boot,
+// less the overflows before the first message.
+TEST(TlogReader, CountersThatEndGoOnAndBeginAnewWithTheirSender) {
+  constexpr double kUs_s = 4'294.967296;  // 32 bits of µs
+  constexpr double kMs_s = 1e3 * kUs_s;
+  constexpr double kDay_s = 86'400.0;
+  const double days13 = kUs_s * std::ceil(13.0 * kDay_s / kUs_s);
+  struct Stretch {
+    double received_s;
+    double up_s;  ///< received 2 s long
+  };
+  const std::vector<std::pair<std::string, std::vector<Stretch>>> cases{
+      {"µs end after 13 days", {{0, days13 - 1}}},
+      {"µs end in a silence", {{0, days13 - 1'800}, {3'600, days13 + 1'800}}},
+      {"ms end", {{0, kMs_s - 1}}},
+      {"ms end in a silence", {{0, kMs_s - 1'800}, {3'600, kMs_s + 1'800}}},
+      {"a boot", {{0, 5 * kDay_s}, {60, 10}}},
+      {"a boot unheard for hours", {{0, 5 * kDay_s}, {9'000, 8'000}}},
+      {"a boot after the end of µs", {{0, days13 - 1}, {60, 10}}},
+      {"a boot after the end of ms", {{0, kMs_s - 1}, {3'600, kMs_s + 3'599}, {3'660, 10}}},
+  };
+  for (const auto& [name, stretches] : cases) {
+    mavlink::FrameWriter writer(1, 1);
+    Tlog log;
+    log.add(kTlogBeginUs, testing::heartbeat_of_vehicle(writer));
+    std::vector<std::int64_t> times_ns;
+    for (const auto& [received_s, up_s] : stretches) {
+      for (int k = 0; k < 20; ++k) {
+        const auto us = std::llround(1e6 * up_s) / 1'000 * 1'000 + 100'000 * k;
+        const auto received_us = kTlogBeginUs + std::llround(1e6 * received_s) + 100'000 * k;
+        const auto add = [&](const char* message, const char* field, std::int64_t count) {
+          constexpr std::int64_t kWrap = std::int64_t{1} << 32;
+          writer.begin(message).set(field, static_cast<double>(count % kWrap));
+          log.add(received_us, writer.finish());
+        };
+        add("ATTITUDE", "time_boot_ms", us / 1'000);
+        add("SERVO_OUTPUT_RAW", "time_usec", us);
+        if (received_s > 0) {
+          add("LOCAL_POSITION_NED", "time_boot_ms", us / 1'000);  // begins late
+        }
+        times_ns.push_back(1'000 * us);
+      }
+    }
+    std::ranges::sort(times_ns);
+    const std::vector<bag::Series> series =
+        series_of(log, {"ATTITUDE:roll", "SERVO_OUTPUT_RAW:servo1_raw"}, bag::Clock::header);
+    EXPECT_EQ(series[0].times_ns, times_ns) << name;
+    EXPECT_EQ(series[1].times_ns, times_ns) << name;
+    if (stretches.size() > 1) {
+      const bag::Series late =
+          series_of(log, {"LOCAL_POSITION_NED:vx", "ATTITUDE:roll"}, bag::Clock::header)[0];
+      for (const std::int64_t time_ns : late.times_ns) {
+        EXPECT_TRUE(std::ranges::binary_search(times_ns, time_ns)) << name << " " << time_ns;
+      }
+    }
+  }
+}
+
 TEST(TlogReader, ACounterOfMicrosecondsDoesNotWaitForeverForItsSender) {
   mavlink::FrameWriter writer(1, 1);
   Tlog log;

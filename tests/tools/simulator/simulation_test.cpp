@@ -55,6 +55,20 @@ TEST(Simulation, SameSeedSameBitsOtherSeedOtherBits) {
   EXPECT_FALSE(same(rows, simulator::simulate(scenario)));
 }
 
+// A row waits for the window of its acceleration alone, so that a day's drive begins at once.
+TEST(Simulation, RowsOneAtATimeAreTheSameAndComeAtOnce) {
+  simulator::Scenario scenario = short_scenario();
+  const simulator::RowSource drive = simulator::drive_in_plane(scenario);
+  std::vector<simulator::LogRow> rows;
+  while (std::optional<simulator::LogRow> row = drive()) {
+    rows.push_back(*row);
+  }
+  EXPECT_TRUE(same(rows, simulator::simulate(scenario)));
+  EXPECT_EQ(rows.size(), 480U);
+  scenario.phases[0].duration_s = 400'000.0;
+  EXPECT_TRUE(same(*simulator::drive_in_plane(scenario)(), rows.front()));
+}
+
 TEST(Simulation, NoiseLeavesCommandsAndMotionAsTheyWere) {
   simulator::Scenario scenario = short_scenario();
   const auto rows = simulator::simulate(scenario);
