@@ -117,7 +117,10 @@ def test_extreme_numbers_do_no_harm(log):
 
 
 def test_files_that_are_no_models(log, model, tmp_path):
-    for text in ("", "{}", "[", '{"format": "kelpie-model", "version": 99}'):
+    model.save(tmp_path / "model.json")
+    sound = (tmp_path / "model.json").read_text()
+    for text in ("", "{}", "[", '{"format": "kelpie-model", "version": 99}',
+                 '{"more": ' + 100_000 * "[" + 100_000 * "]" + "," + sound[1:]):
         (tmp_path / "bad.json").write_text(text)
         with pytest.raises(ValueError, match="bad.json"):
             kelpie.DynamicsModel.load(tmp_path / "bad.json")

@@ -1,15 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/json_node.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "kelpie/core/error.hpp"
 
 namespace kelpie {
 
-Json parse_json(std::string_view text, const std::string& source) {
+namespace {
+
+// Before the parse: who copies or reads a value recurses, and an object looks for each new key
+// among all earlier ones.
+void check_shape(std::string_view text, const std::string& source) {
+  std::array<std::size_t, kDeepestJson + 1> keys{};  // of the open lists and objects
+  std::size_t depth = 0;
+  const auto require = [&](bool holds, std::size_t most, const std::string& what) {
+    if (!holds) {
+      throw InputError(
+          {.file = source, .field = "file"},
+          "has more than " + std::to_string(most) + " " + what + "; no file of kelpie's has");
+    }
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i];
+    if (letter == '"') {
+      while (++i < text.size() && text[i] != '"') {
+        i += text[i] == '\\' ? 1 : 0;
+      }
+    } else if (letter == ']' || letter == '}') {
+      depth -= depth > 0 ? 1 : 0;
+    } else if (letter == '[' || letter == '{') {
+      require(depth < kDeepestJson, kDeepestJson, "lists and objects within each other");
+      keys[++depth] = 0;
+    } else if (letter == ':') {
+      require(++keys[depth] <= kMostJsonKeys, kMostJsonKeys, "keys in an object");
+    }
+  }
+}
+
+}  // namespace
+
+Json parse_json(std::string_view text, const std::string& source,
+                const Json::parser_callback_t& callback) {
+  check_shape(text, source);
   try {
-    return Json::parse(text);
+    return Json::parse(text, callback);
   } catch (const Json::out_of_range& error) {
     throw InputError({.file = source, .field = "file"},
                      std::string("holds a number out of a double's range: ") + error.what());
@@ -17,6 +53,14 @@ Json parse_json(std::string_view text, const std::string& source) {
     throw InputError({.file = source, .field = "file"},
                      "is not JSON (from byte " + std::to_string(error.byte) +
                          " on): another file was given, or this one is damaged");
+  }
+}
+
+Json json_or_discarded(std::string_view text) {
+  try {
+    return parse_json(text, "");
+  } catch (const InputError&) {
+    return Json::value_t::discarded;
   }
 }
 

@@ -12,8 +12,18 @@ namespace kelpie {
 /// JSON with keys in the order of insertion.
 using Json = nlohmann::ordered_json;
 
-/// Parses JSON. Throws InputError on malformed text, and on a number out of a double's range.
-Json parse_json(std::string_view text, const std::string& source);
+/// Lists and objects within each other; kelpie's own files have some ten.
+inline constexpr std::size_t kDeepestJson = 100;
+/// Keys of an object; kelpie's own files have some hundred.
+inline constexpr std::size_t kMostJsonKeys = 1'000;
+
+/// Parses JSON, by way of `callback` if given. Throws InputError on malformed text, beyond
+/// kDeepestJson and kMostJsonKeys, and on a number out of a double's range. No other function
+/// parses JSON.
+Json parse_json(std::string_view text, const std::string& source,
+                const Json::parser_callback_t& callback = nullptr);
+/// The same, but a discarded value in place of an InputError.
+Json json_or_discarded(std::string_view text);
 
 /// A value of a JSON file, with the path for messages. Throws InputError naming file and path on an
 /// unsuitable value. Requires the document to be alive.

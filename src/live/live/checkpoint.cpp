@@ -28,7 +28,7 @@ format::RunIdentity identity_of(const Configuration& configuration, const Alignm
 
 // Earlier checkpoints do not tell some fields. In these the fields have their usual values.
 void leave_out_untold(const std::string& header, format::RunIdentity& identity) {
-  const file::Json told = file::Json::parse(header, nullptr, false);
+  const file::Json told = file::json_or_discarded(header);
   const file::Json run =
       told.is_object() ? told.value("run", file::Json::object()) : file::Json::object();
   std::erase_if(identity.run, [&](const auto& field) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -36,9 +37,18 @@ class ChunkedReader : public FileReader {
     chunk_cursor_ = Cursor(content);
   }
 
-  /// Unpacks a chunk to chunk_. Throws InputError (offset) on damage.
+  /// Unpacks a chunk to chunk_. Throws InputError (offset) on damage, and ends reading where all
+  /// chunks together are to hold more than can come of the file.
   void unpack_chunk(std::uint64_t offset, std::string_view compression,
                     std::span<const std::byte> packed, std::uint64_t size) {
+    const std::uint64_t all = unpacked_bytes_ + std::min(size, UINT64_MAX - unpacked_bytes_);
+    if (!compression.empty() && !is_believable(all, bytes_.size())) {
+      is_done_ = true;
+      region_.refuse(offset, fmt::format("the chunks up to here are to hold {} bytes, which cannot "
+                                         "come of the file's {}",
+                                         all, bytes_.size()));
+    }
+    unpacked_bytes_ = all;
     if (const std::string wrong = unpack(compression, packed, size, chunk_); !wrong.empty()) {
       region_.refuse(offset, "a chunk is damaged: " + wrong);
     }
@@ -62,7 +72,8 @@ class ChunkedReader : public FileReader {
   bool is_done_ = false;
 
  private:
-  std::uint64_t unpacked_ = 0;  // messages of packed chunks
+  std::uint64_t unpacked_ = 0;        // messages of packed chunks
+  std::uint64_t unpacked_bytes_ = 0;  // that the packed chunks so far are to hold
 };
 
 }  // namespace kelpie::bag

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bag/inspect.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -10,6 +12,7 @@
 #include "bag/decoding.hpp"
 #include "bag/sender_times.hpp"
 #include "bag/statistics.hpp"
+#include "bag/tuning.hpp"
 #include "core/quantile.hpp"
 #include "core/seconds.hpp"
 
@@ -51,11 +54,16 @@ class LeafInspector {
 // Looks at the messages of one topic.
 class TopicInspector final : public NumberVisitor {
  public:
-  TopicInspector(const Topic& topic, const MessageDefinitions& definitions) {
+  // Takes the leaves of the topic from those that are left.
+  TopicInspector(const Topic& topic, const MessageDefinitions& definitions,
+                 std::size_t& leaves_left) {
     report_.name = topic.name;
     report_.type = topic.type;
     try {
+      require(leaves_left > 0, topic.name,
+              fmt::format("the topics before have more than {} fields", kTuning.most_leaves));
       decoder_ = Decoder(topic, definitions);
+      leaves_left -= std::min(leaves_left, decoder_.type().leaves.size());
       stamp_ = StampReader(decoder_);
       is_decoded_ = true;
     } catch (const InputError& error) {
@@ -135,9 +143,10 @@ Inspectors look_at(MessageReader& bag, const MessageDefinitions& definitions,
   AutopilotState autopilot;
   SenderTimes times;
   std::int64_t before_ns = 0;
+  std::size_t leaves_left = kTuning.most_leaves;
   const auto meet_topics = [&] {
     for (std::size_t k = topics.size(); k < bag.topics().size(); ++k) {
-      topics.push_back(std::make_unique<TopicInspector>(bag.topics()[k], definitions));
+      topics.push_back(std::make_unique<TopicInspector>(bag.topics()[k], definitions, leaves_left));
     }
   };
   for (Message message; bag.next(message);) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "core/text.hpp"
 #include "file/content.hpp"
@@ -33,8 +34,13 @@ class MetadataFile {
     if (!files.IsDefined() || !files.IsSequence() || files.size() == 0) {
       refuse(bag.Mark(), "relative_file_paths", "a list of files is due");
     }
-    for (const YAML::Node& name : files) {
-      metadata.files.push_back(file_name(name));
+    std::set<std::string> known;
+    for (const YAML::Node& node : files) {
+      metadata.files.push_back(file_name(node));
+      if (!known.insert(metadata.files.back()).second) {
+        refuse(node.Mark(), "relative_file_paths",
+               "'" + metadata.files.back() + "' stands here twice");
+      }
     }
     return metadata;
   }
@@ -88,7 +94,7 @@ class MetadataFile {
     if (name.empty() || is_outside) {
       refuse(node.Mark(), "relative_file_paths", "a file within the bag's folder is due");
     }
-    return name.string();
+    return name.lexically_normal().string();
   }
 
   std::string file_;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "bag/tuning.hpp"
+
 namespace kelpie::bag {
 namespace {
 
@@ -27,7 +29,7 @@ std::string passed_over_text(const std::map<std::string, std::size_t>& by_topic)
 }  // namespace
 
 bool MessageReader::next(Message& message) {
-  while (!at_end()) {
+  while (definitions_ <= kTuning.most_definitions && !at_end()) {
     try {
       if (step(message)) {
         return true;
@@ -87,11 +89,20 @@ std::size_t MessageReader::add_topic(const Topic& topic, const std::string& file
   const auto [found, is_new] = index_by_name_.emplace(topic.name, topics_.size());
   if (is_new) {
     topics_.push_back(topic);
+    count_definition(topic.definition.size(), file);
   } else if (topics_[found->second].type != topic.type) {
     throw InputError({.file = file, .field = topic.name},
                      "has two types, " + topics_[found->second].type + " and " + topic.type);
   }
   return found->second;
+}
+
+void MessageReader::count_definition(std::size_t cost, const std::string& file) {
+  definitions_ += cost;
+  if (definitions_ > kTuning.most_definitions) {
+    throw InputError({.file = file}, fmt::format("defines its topics by more than {} MB",
+                                                 kTuning.most_definitions / 1'000'000));
+  }
 }
 
 }  // namespace kelpie::bag

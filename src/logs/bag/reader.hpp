@@ -103,8 +103,11 @@ class MessageReader {
   virtual void pass_damage() {}
 
   /// Index of the topic of this name; appends a new topic. Throws InputError (file) on a known
-  /// topic with another type.
+  /// topic with another type, and ends reading where definitions are too many.
   std::size_t add_topic(const Topic& topic, const std::string& file);
+  /// Counts bytes and fields of a topic's definition. Throws InputError (file), and ends reading,
+  /// beyond Tuning::most_definitions: a few bytes can name a long definition again and again.
+  void count_definition(std::size_t cost, const std::string& file);
   /// Counts a message with a wrong checksum, of the topic called `topic`.
   void pass_over(const std::string& topic) { ++passed_over_[topic]; }
   /// Notes a sound part of the recording that is not read.
@@ -122,6 +125,7 @@ class MessageReader {
   std::size_t loss_count_ = 0;
   std::map<std::string, std::size_t> passed_over_;
   std::vector<std::string> left_out_;
+  std::size_t definitions_ = 0;  // bytes and fields
   std::shared_ptr<const void> content_;
 };
 

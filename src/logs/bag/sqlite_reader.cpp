@@ -31,7 +31,7 @@ class SqliteReader final : public MessageReader {
     }
     check_last_page();
     read_topics();
-    rows_ = prepare("SELECT id, topic_id, timestamp, data FROM messages ORDER BY id");
+    rows_ = prepare(messages("ORDER BY rowid"));
   }
 
   Place place() const override {
@@ -74,15 +74,17 @@ class SqliteReader final : public MessageReader {
 
   // Once: what lies behind the damage is reached from the other side.
   void pass_damage() override {
-    if (backwards_) {
+    if (backwards_ || bytes_left_ == 0 || steps_left_ == 0) {
       at_end_ = true;
       return;
     }
     backwards_ = true;
-    rows_ =
-        prepare(fmt::format("SELECT id, topic_id, timestamp, data FROM messages WHERE id > {} "
-                            "ORDER BY id DESC",
-                            last_id_));
+    rows_ = prepare(messages(fmt::format("WHERE rowid > {} ORDER BY rowid DESC", last_id_)));
+  }
+
+  // Row by row as the file has them: no index, whose rows would have to be sorted first.
+  static std::string messages(const std::string& which) {
+    return "SELECT rowid, topic_id, timestamp, data FROM messages NOT INDEXED " + which;
   }
 
   [[noreturn]] void refuse(const std::string& message) const {
@@ -98,13 +100,23 @@ class SqliteReader final : public MessageReader {
     }
   }
 
-  // A damaged file may claim anything: no cell is longer than the file, no schema is trusted.
+  // A damaged file may claim anything: no cell is longer than the file, no schema is trusted, and
+  // pages that are named twice do not make the work endless.
   void limit() {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(file_, error);
-    const auto longest = std::min<std::uintmax_t>(size, std::numeric_limits<int>::max());
+    for (const char* const ending : {"", "-wal"}) {
+      std::error_code error;
+      const auto size = std::filesystem::file_size(file_ + ending, error);
+      bytes_ += error ? 0 : size;
+    }
+    bytes_left_ = steps_left_ = bytes_;
+    const auto longest = std::min<std::uintmax_t>(bytes_, std::numeric_limits<int>::max());
     sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH,  // the query itself has to fit, too
                   std::max(static_cast<int>(longest), 4096));
+    const auto has_ended = [](void* reader) {
+      auto& left = static_cast<SqliteReader*>(reader)->steps_left_;
+      return left == 0 ? 1 : static_cast<int>(--left == 0);
+    };
+    sqlite3_progress_handler(database_.get(), kInstructions, has_ended, this);
     for (const char* const pragma :
          {"PRAGMA trusted_schema = OFF", "PRAGMA cell_size_check = ON"}) {
       sqlite3_exec(database_.get(), pragma, nullptr, nullptr, nullptr);
@@ -122,13 +134,33 @@ class SqliteReader final : public MessageReader {
 
   bool run(const Statement& statement, const std::string& where) {
     const int code = sqlite3_step(statement.get());
-    if (code == SQLITE_ROW || code == SQLITE_DONE) {
-      return code == SQLITE_ROW;
+    if (code == SQLITE_DONE) {
+      return false;
+    }
+    if (code == SQLITE_ROW && pay_for_row(statement.get())) {
+      return true;
+    }
+    if (code == SQLITE_ROW || (code & 0xFF) == SQLITE_INTERRUPT) {
+      refuse(fmt::format("{}: holds more rows than can come of its {} bytes", where, bytes_));
     }
     if ((code & 0xFF) == SQLITE_NOMEM) {
       throw Failure(file_ + ": out of memory");
     }
     refuse(fmt::format("{}: is damaged or cut off: {}", where, sqlite3_errmsg(database_.get())));
+  }
+
+  // Every row costs the bytes of its texts and blobs and one more. False: the file has no more.
+  bool pay_for_row(sqlite3_stmt* row) {
+    std::uintmax_t cost = 1;
+    for (int column = 0; column < sqlite3_column_count(row); ++column) {
+      const int type = sqlite3_column_type(row, column);
+      if (type == SQLITE_TEXT || type == SQLITE_BLOB) {
+        cost += static_cast<std::uintmax_t>(sqlite3_column_bytes(row, column));
+      }
+    }
+    const bool is_paid = cost <= bytes_left_;
+    bytes_left_ = is_paid ? bytes_left_ - cost : 0;
+    return is_paid;
   }
 
   bool has_table(const std::string& name) {
@@ -178,7 +210,12 @@ class SqliteReader final : public MessageReader {
     return definitions;
   }
 
+  static constexpr int kInstructions = 16;  // of SQLite, for a byte of the file: a row takes ten
+
   std::string file_;
+  std::uintmax_t bytes_ = 0;       // of the file
+  std::uintmax_t bytes_left_ = 0;  // for rows
+  std::uintmax_t steps_left_ = 0;  // of kInstructions, also for what makes no row
   Database database_{nullptr, &sqlite3_close_v2};
   Statement rows_{nullptr, &sqlite3_finalize};
   std::map<std::int64_t, std::size_t> topic_by_id_;

@@ -15,6 +15,7 @@
 #include "bag/byte_reader.hpp"
 #include "bag/file_reader.hpp"
 #include "bag/topic_columns.hpp"
+#include "bag/tuning.hpp"
 #include "bag/ulog_messages.hpp"
 #include "kelpie/core/error.hpp"
 
@@ -110,17 +111,21 @@ class UlogDefinitions {
             .definition = ulog_definition(name, formats_)};
   }
 
-  // Messages of this number are of that topic, whose index is `index`.
-  void subscribe(std::uint16_t number, const Topic& topic, std::size_t index) {
+  // Messages of this number are of that topic, whose index is `index`. Returns how many fields were
+  // looked at, at most.
+  std::size_t subscribe(std::uint16_t number, const Topic& topic, std::size_t index) {
     UlogSubscription subscription{.is_there = true, .topic = index};
+    std::size_t fields = kTuning.most_fields;
     try {
       const MessageType type = ulog_type_of(topic, MessageDefinitions());
       subscription.bytes = type.root.least_bytes;
       subscription.time_at = place_of_time(type);
+      fields = type.leaves.size();
     } catch (const InputError&) {  // who wants the topic will say so
     }
     subscriptions_.resize(std::max<std::size_t>(subscriptions_.size(), number + std::size_t{1}));
     subscriptions_[number] = subscription;
+    return fields;
   }
 
   // nullptr: nobody has subscribed to them.
@@ -270,7 +275,8 @@ class UlogReader final : public FileReader {
       region_.refuse(record.offset, "the topic name is not printable ASCII");
     }
     const Topic topic = definitions_.topic(name, instance);
-    definitions_.subscribe(id, topic, add_topic(topic, region_.file));
+    const std::size_t fields = definitions_.subscribe(id, topic, add_topic(topic, region_.file));
+    count_definition(topic.definition.size() + fields, region_.file);
   }
 
   const UlogSubscription* subscription_of(const UlogRecord& record) const {

@@ -11,6 +11,7 @@ namespace kelpie::file {
 
 // Reading is the library's: a model.json is read without these buildings.
 using kelpie::Json;
+using kelpie::json_or_discarded;
 using kelpie::JsonNode;
 using kelpie::parse_json;
 

@@ -58,9 +58,8 @@ EarlierStudy read_earlier_study(const std::filesystem::path& file) {
       file::read_content(file, "the study.json of an earlier study", file::kTuning.study_bytes);
   // A run is taken as soon as it is read, and not kept: there are thousands.
   std::string list;
-  const Json rest = Json::parse(
-      text,
-      [&](int depth, Json::parse_event_t event, Json& value) {
+  const Json rest =
+      file::parse_json(text, study.file, [&](int depth, Json::parse_event_t event, Json& value) {
         if (depth == 1 && event == Json::parse_event_t::key) {
           list = value.get<std::string>();
         }
@@ -69,11 +68,7 @@ EarlierStudy read_earlier_study(const std::filesystem::path& file) {
         }
         take_run(JsonNode(value, study.file, kRunsKey), study);
         return false;
-      },
-      false);
-  if (rest.is_discarded()) {
-    throw InputError({.file = study.file, .line = 0, .field = {}}, "is no JSON");
-  }
+      });
   const JsonNode root(rest, study.file, "");
   root.require_format(kStudyFormat, kStudyVersion);
   study.kelpie = root["kelpie"].text();

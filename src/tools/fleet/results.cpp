@@ -119,7 +119,7 @@ void Results::look_up() {
       if (found_[i] != nullptr || !journal.has(name)) {
         return;
       }
-      const Json json = Json::parse(journal.result(name));
+      const Json json = file::parse_json(journal.result(name), journal.file().string());
       if (!json.contains(kError)) {
         found_[i] = &journal;
       } else if (!own_) {
@@ -163,7 +163,7 @@ bool Results::run(jobs::Executor& executor, const std::function<bool(double)>& k
 }
 
 void Results::enter(std::size_t i, const std::string& result) {
-  const Json json = Json::parse(result);
+  const Json json = file::parse_json(result, key(i));
   if (json.contains(kError)) {
     failures_[i] =
         with_name(json.at(kError).get<std::string>(), missions_[combinations_[i].mission]);

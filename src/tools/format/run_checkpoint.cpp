@@ -114,7 +114,7 @@ Checkpoint pack_run(const RunIdentity& identity, const RunState& state) {
 
 RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity) {
   const std::string file = found.file.string();
-  const Json header = Json::parse(found.checkpoint.header, nullptr, false);
+  const Json header = file::json_or_discarded(found.checkpoint.header);
   RunState state = state_of(found, header);
   require_same(header, "run", identity.run, file);
   require_same(header, "settings", identity.settings, file);
@@ -123,7 +123,7 @@ RunState unpack_run(const FoundCheckpoint& found, const RunIdentity& identity) {
 
 SavedModel saved_model(const FoundCheckpoint& found) {
   const std::string file = found.file.string();
-  const Json header = Json::parse(found.checkpoint.header, nullptr, false);
+  const Json header = file::json_or_discarded(found.checkpoint.header);
   SavedModel saved{.state = state_of(found, header).model};
   const file::JsonNode root(header, file, "");
   saved.inputs = root["inputs"].names(kMostInputs);

@@ -148,7 +148,7 @@ std::size_t JournalReader::read(std::string_view kind, const Header& header) {
 
 void JournalReader::check_header(std::string_view line, std::string_view kind,
                                  const Header& header) const {
-  const Json found = Json::parse(line, nullptr, false);
+  const Json found = file::json_or_discarded(line);
   const auto has = [&found](const char* name, const Json& wanted) {
     const auto value = found.find(name);
     return value != found.end() && *value == wanted;
@@ -172,7 +172,7 @@ void JournalReader::check_header(std::string_view line, std::string_view kind,
 
 // As it stands there: texts that aren't UTF-8 are repaired in a journal.
 std::string JournalReader::key_in(std::string_view line, std::size_t number) const {
-  const Json json = Json::parse(line, nullptr, false);
+  const Json json = file::json_or_discarded(line);
   if (!json.is_object() || !json.contains("key") || !json.contains("result")) {
     refuse(number, "", "is no result; delete this line to go on");
   }
@@ -191,7 +191,7 @@ std::string JournalReader::result(const std::string& key) const {
       !under_checksum(text)) {
     throw Failure(file_.string() + ": a result can't be read again");
   }
-  return file::one_line(Json::parse(text).at("result"));
+  return file::one_line(file::parse_json(text, file_.string()).at("result"));
 }
 
 void Journal::add(const std::string& key, std::string_view result) {

@@ -38,7 +38,7 @@ std::optional<ChainScore> TuneJournal::find(const EvaluationKey& key) const {
   if (!journal_.has(text)) {
     return std::nullopt;
   }
-  const Json json = Json::parse(journal_.result(text));
+  const Json json = file::parse_json(journal_.result(text), text);
   ChainScore score;
   score.score = number_or_nan(json.at("score"));
   for (const Json& stretch : json.at("stretches")) {

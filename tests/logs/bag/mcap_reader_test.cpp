@@ -87,6 +87,67 @@ std::string record(char opcode, std::string_view content) {
   return opcode + with_length(8, content);
 }
 
+std::string number_text(std::uint64_t value) {
+  std::string text(sizeof value, '\0');
+  std::memcpy(text.data(), &value, text.size());
+  return text;
+}
+
+// A chunk of this content, packed.
+std::string chunk(const std::string& content) {
+  return record(kChunk, std::string(16, '\0') + number_text(content.size()) + std::string(4, '\0') +
+                            with_length(4, "zstd") + with_length(8, bag::pack("zstd", content)));
+}
+
+// A file of these records.
+std::string mcap_of_records(const std::string& records) {
+  const std::string magic = small_mcap().substr(0, 8);
+  return magic + record(1, with_length(4, "ros2") + with_length(4, "")) + records +
+         record(15, std::string(4, '\0')) + record(2, std::string(20, '\0')) + magic;
+}
+
+// Each chunk alone is no more than is accepted of any file.
+TEST(McapReader, ChunksThatTogetherUnpackToMuchAreRefused) {
+  const std::string one = chunk(record(kMessage, std::string(40'000'000, '\0')));
+  const std::string mcap = mcap_of_records(one + one + one);
+  EXPECT_LT(mcap.size(), 100'000U);
+  const std::string message = refusal(mcap);
+  EXPECT_NE(message.find("a message belongs to the channel 0"), std::string::npos) << message;
+  const Content content = read_all(mcap, bag::ReadMode::recover);
+  ASSERT_EQ(content.losses.size(), 2U);
+  EXPECT_NE(content.losses[1].find("the chunks up to here are to hold 80000018 bytes"),
+            std::string::npos)
+      << content.losses[1];
+}
+
+// A channel of a few bytes names a schema that may be long.
+TEST(McapReader, TopicsByTooManyDefinitionsAreRefused) {
+  const auto mcap = [](const std::string& definition, std::uint8_t topics) {
+    std::string records = record(3, std::string("\1\0", 2) + with_length(4, "t/msg/T") +
+                                        with_length(4, "ros2msg") + with_length(4, definition));
+    for (std::uint8_t k = 0; k < topics; ++k) {
+      records += record(4, std::string(1, static_cast<char>(k)) + std::string("\0\1\0", 3) +
+                               with_length(4, "/t" + std::to_string(k)) + with_length(4, "cdr") +
+                               with_length(4, ""));
+    }
+    return mcap_of_records(records);
+  };
+  const std::string much = mcap("# " + std::string(1'000'000, 'x') + "\nfloat64 x\n", 100);
+  EXPECT_NE(refusal(much).find("defines its topics by more than 64 MB"), std::string::npos);
+  EXPECT_LE(read_all(much, bag::ReadMode::recover).topics.size(), 64U);
+
+  std::string fields;
+  for (int k = 0; k < 19'000; ++k) {
+    fields += "float64 x" + std::to_string(k) + "\n";
+  }
+  const std::string many = mcap(fields, 15);
+  const auto bag = bag::read_mcap(as_bytes(many), "many.mcap", bag::ReadMode::strict);
+  const bag::BagReport report = bag::inspect_bag(*bag, bag::MessageDefinitions());
+  EXPECT_EQ(std::ranges::count_if(report.topics,
+                                  [](const auto& topic) { return !topic.not_decoded.empty(); }),
+            4);
+}
+
 // Each costs memory, and packed as they are they cost nothing on disk.
 TEST(McapReader, MoreMessagesThanBytesAreRefused) {
   const std::string zeros(40, '\0');
@@ -94,17 +155,10 @@ TEST(McapReader, MoreMessagesThanBytesAreRefused) {
   for (int i = 0; i < 150'000; ++i) {
     messages += record(kMessage, std::string("\1\0", 2) + zeros);
   }
-  const std::string packed = bag::pack("zstd", messages);
-  std::string size(8, '\0');
-  const std::uint64_t bytes = messages.size();
-  std::memcpy(size.data(), &bytes, size.size());
   const std::string mcap =
-      small_mcap().substr(0, 8) + record(1, with_length(4, "ros2") + with_length(4, "")) +
-      record(4, std::string("\1\0\0\0", 4) + with_length(4, "/a") + with_length(4, "cdr") +
-                    with_length(4, "")) +
-      record(kChunk, zeros.substr(0, 16) + size + zeros.substr(0, 4) + with_length(4, "zstd") +
-                         with_length(8, packed)) +
-      record(15, zeros.substr(0, 4)) + record(2, zeros.substr(0, 20)) + small_mcap().substr(0, 8);
+      mcap_of_records(record(4, std::string("\1\0\0\0", 4) + with_length(4, "/a") +
+                                    with_length(4, "cdr") + with_length(4, "")) +
+                      chunk(messages));
   EXPECT_LT(mcap.size(), 20'000U);
   const std::string message = refusal(mcap);
   EXPECT_NE(message.find("the bag unpacks to more than 1"), std::string::npos) << message;

@@ -98,6 +98,21 @@ TEST(UlogReader, InstancesAreTopicsAndTimestampsTimes) {
   EXPECT_EQ(series[1].values[0], (std::vector<double>{-1.0, -1.0, -1.0}));
 }
 
+// A subscription of a few bytes names a format that may be long.
+TEST(UlogReader, TooManySubscriptionsToALongFormatAreRefused) {
+  std::string fields = "long:uint64_t timestamp;";
+  for (int k = 0; k < 4'000; ++k) {
+    fields += "float x" + std::to_string(k) + ";";
+  }
+  PackedBytes log = file_head();
+  log.add(flags(0)).add(format(fields));
+  for (int k = 0; k < 1'500; ++k) {
+    log.add(subscribe(0, 0, "long"));
+  }
+  const std::string message = reader.refusal(log.bytes());
+  EXPECT_NE(message.find("defines its topics by more than 64 MB"), std::string::npos) << message;
+}
+
 TEST(UlogReader, NestedTypesArraysTextsAndPaddingAreRead) {
   PackedBytes log = definitions();
   PackedBytes status = PackedBytes().add(std::uint64_t{5}).add("ab", 4);

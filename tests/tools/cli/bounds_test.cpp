@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <string>
 
 #include "cli/command.hpp"
@@ -72,6 +73,33 @@ TEST_F(Bounds, LinesAndColumnsAreBounded) {
   expect_refused("inspect long.csv", "long.csv:3: is a line of 1048578 characters; at most ");
   write("big.toml", "# " + std::string(5 << 20, 'x') + "\n");
   expect_refused("learn log.csv --config big.toml", "big.toml: is larger than 4 MB");
+}
+
+// One more key, as deep as no stack or with as many members as no search survives.
+TEST_F(Bounds, JsonIsNeitherDeepNorOfManyKeys) {
+  learn_little_log();
+  write("fleet.toml", "logs = \"log.csv\"\n");
+  const std::string sound = content("out/model.json");
+  std::string keys = "{";
+  for (int k = 0; k < 2'000; ++k) {
+    keys += "\"k" + std::to_string(k) + "\": 0,";
+  }
+  const std::map<std::string, std::string> kinds{
+      {std::string(100'000, '[') + std::string(100'000, ']'),
+       "100 lists and objects within each other"},
+      {keys + "\"end\": 0}", "1000 keys in an object"}};
+  for (const auto& [value, message] : kinds) {
+    write("bad.json", "{\"more\": " + value + "," + sound.substr(sound.find('{') + 1));
+    for (const char* const command :
+         {"predict log.csv --model bad.json", "export bad.json --c x.c",
+          "rollout log.csv --model bad.json", "learn log.csv --from bad.json --out out2",
+          "learn log.csv --nominal bad.json --out out2",
+          "learn log.csv --scales bad.json --out out2",
+          "learn log.csv --memory bad.json --out out2", "memory list bad.json",
+          "study fleet.toml --against bad.json"}) {
+      testing::expect_refused(run(command), "bad.json: file: has more than " + message);
+    }
+  }
 }
 
 TEST_F(Bounds, ATermOfThousandsOfFactorsIsRefused) {

@@ -79,8 +79,8 @@ TEST(EarlierStudy, RefusesWhatIsNone) {
   };
   const std::string head = R"({"format": "kelpie-study", "version": 1, "kelpie": "0", "runs": )";
   EXPECT_EQ(refused(head + "[]}"), "");
-  EXPECT_NE(refused("").find("is no JSON"), std::string::npos);
-  EXPECT_NE(refused(head + "[{").find("is no JSON"), std::string::npos);
+  EXPECT_NE(refused("").find("is not JSON"), std::string::npos);
+  EXPECT_NE(refused(head + "[{").find("is not JSON"), std::string::npos);
   EXPECT_NE(refused("[]").find("format"), std::string::npos);
   EXPECT_NE(refused(R"({"format": "kelpie-study", "version": 2})").find("version"),
             std::string::npos);

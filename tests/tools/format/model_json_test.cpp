@@ -83,6 +83,10 @@ TEST(ModelJson, IsReadInCToTheSamePredictionsToTheLastBit) {
   for (std::size_t size = 0; size < text.size(); size = size < 400 ? size + 1 : 2 * size) {
     ASSERT_EQ(kelpie_read_trained(text.data(), size, &none), KELPIE_BAD_INPUT) << size;
   }
+  const std::string deep =
+      "{\"more\": " + std::string(100'000, '[') + std::string(100'000, ']') + "," + text.substr(1);
+  EXPECT_EQ(kelpie_read_trained(deep.data(), deep.size(), &none), KELPIE_BAD_INPUT);
+  EXPECT_NE(std::string(kelpie_last_error()).find("within each other"), std::string::npos);
   EXPECT_EQ(kelpie_read_trained(nullptr, 0, &none), KELPIE_BAD_INPUT);
   EXPECT_EQ(none, nullptr);
 }
