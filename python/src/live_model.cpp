@@ -98,8 +98,9 @@ py::array_t<Decision> LiveModel::update(const Array& x, const Array& y, const Ar
   times.require_size(inputs.size(), "t");
   py::array_t<Decision> decisions({extent(inputs.size()), extent(model_.axes())});
   Decision* const out = decisions.mutable_data();
+  turns_.require_whole();
   for_rows(
-      inputs.size(), [this] { return std::unique_lock(mutex_); },
+      inputs.size(), [this] { return std::unique_lock(turns_.mutex); },
       [&](std::size_t row) {
         model_.update(inputs[row], targets[row], times[row][0]);
         std::ranges::copy(model_.decisions(), row_of(out, row, model_.axes()).begin());
@@ -146,8 +147,7 @@ py::tuple LiveModel::predict_with_jacobian(const Array& x) const {
 py::list LiveModel::status() const {
   std::vector<Status> found;
   {
-    const py::gil_scoped_release release;
-    const std::shared_lock lock(mutex_);
+    const ReadingTurn turn(turns_);
     for (std::size_t axis = 0; axis < model_.axes(); ++axis) {
       found.push_back(model_.axis(axis).status());
     }
@@ -165,8 +165,7 @@ py::object LiveModel::diagnosis() const {
   std::vector<Finding> findings;
   std::vector<Cause> health;
   {
-    const py::gil_scoped_release release;
-    const std::shared_lock lock(mutex_);
+    const ReadingTurn turn(turns_);
     findings = model_.findings();
     health = model_.diagnosis()->health();
   }
@@ -187,8 +186,7 @@ Authority LiveModel::authority(
     commands.push_back(
         {.input = static_cast<std::size_t>(found - inputs_.begin()), .least = least, .most = most});
   }
-  const py::gil_scoped_release release;
-  const std::shared_lock lock(mutex_);
+  const ReadingTurn turn(turns_);
   return {*model_.diagnosis(), std::move(commands)};
 }
 
@@ -206,8 +204,7 @@ Array LiveModel::coefficients() const {
   Array values({extent(model_.axes()), extent(terms)});
   double* const out = values.mutable_data();
   std::fill_n(out, values.size(), std::numeric_limits<double>::quiet_NaN());
-  const py::gil_scoped_release release;
-  const std::shared_lock lock(mutex_);
+  const ReadingTurn turn(turns_);
   for (std::size_t axis = 0; axis < model_.axes(); ++axis) {
     if (model_.axis(axis).status().ready) {
       std::ranges::transform(model_.axis(axis).coefficients(), row_of(out, axis, terms).begin(),
@@ -218,8 +215,7 @@ Array LiveModel::coefficients() const {
 }
 
 TrainedModel LiveModel::trained() const {
-  const py::gil_scoped_release release;
-  const std::shared_lock lock(mutex_);
+  const ReadingTurn turn(turns_);
   if (!model_.ready()) {
     throw InputError("too few rows so far for a model to keep, or rows that are all alike");
   }
@@ -229,8 +225,7 @@ TrainedModel LiveModel::trained() const {
 }
 
 std::int64_t LiveModel::samples() const {
-  const py::gil_scoped_release release;
-  const std::shared_lock lock(mutex_);
+  const ReadingTurn turn(turns_);
   return samples_;
 }
 
@@ -259,8 +254,7 @@ py::tuple LiveModel::state() const {
   std::string state;
   std::int64_t samples = 0;
   {
-    const py::gil_scoped_release release;
-    const std::shared_lock lock(mutex_);
+    const ReadingTurn turn(turns_);
     samples = samples_;
     state = format::checkpoint_bytes({.header = kStateHeader, .state = model_.save()});
   }

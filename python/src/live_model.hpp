@@ -14,6 +14,7 @@
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/vehicle/diagnosis.hpp"
 #include "rows.hpp"
+#include "turns.hpp"
 
 namespace kelpie::python {
 
@@ -35,8 +36,7 @@ class LiveModel {
 
   /// DynamicsModel::learn_held_back().
   void learn_held_back() {
-    const py::gil_scoped_release release;
-    const std::unique_lock lock(mutex_);
+    const WritingTurn turn(turns_);
     model_.learn_held_back();
   }
 
@@ -78,7 +78,8 @@ class LiveModel {
             SettingTexts settings, DynamicsModel model, std::int64_t samples, Alignment alignment);
 
   auto reading() const {
-    return [this] { return std::shared_lock(mutex_); };
+    turns_.require_whole();
+    return [this] { return std::shared_lock(turns_.mutex); };
   }
 
   std::vector<std::string> inputs_;
@@ -87,7 +88,7 @@ class LiveModel {
   DynamicsModel model_;
   Alignment alignment_;
   std::int64_t samples_ = 0;
-  mutable std::shared_mutex mutex_;
+  mutable Turns turns_;
 };
 
 }  // namespace kelpie::python

@@ -5,7 +5,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "cli/run_program.hpp"
 #include "log/dataset.hpp"
 #include "study/split.hpp"
+#include "turns.hpp"
 
 namespace kelpie::python {
 namespace {
@@ -24,9 +24,8 @@ namespace py = pybind11;
 
 // One at a time: commands print, and handle signals, for the whole process.
 std::string run_command(const std::vector<std::string>& words) {
-  static std::mutex one;
-  const py::gil_scoped_release release;
-  const std::lock_guard<std::mutex> lock(one);
+  static Turns turns;
+  const WritingTurn turn(turns);
   CLI::App app("kelpie", "kelpie");
   app.require_subcommand(1);
   cli::add_learn(app);

@@ -10,6 +10,7 @@ import pytest
 from conftest import INPUTS, drive
 
 import kelpie
+from kelpie import _kelpie
 
 
 def late(rows, shift):
@@ -92,6 +93,12 @@ def test_hostile_rows():
         alignment.fit(X, y, t[::-1])
     with pytest.raises(ValueError, match="features"):
         alignment.fit(X, y).transform(X[:, :3])
+
+
+@pytest.mark.parametrize("rows", [2**31 - 1, -2**31, 1_000_001])
+def test_a_shift_of_the_module_has_bounds(rows):
+    with pytest.raises(ValueError, match="rows: have to be within"):
+        _kelpie.align(np.zeros((5, 2)), np.arange(5.0), 1.0, rows, [1], [])
 
 
 def test_a_loaded_model_tells_its_shift(tmp_path):

@@ -2,6 +2,7 @@
 """Arrays aren't copied, other threads run meanwhile, Ctrl-C is heard."""
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -61,6 +62,45 @@ def test_other_threads_run_while_one_learns(log):
     assert not failures
     assert turns > 10
     assert model.n_samples_seen_ == 600 + 2 * len(X)
+
+
+def test_a_forked_child_refuses_what_another_thread_was_at(log):
+    X, y = np.tile(log.X, (50, 1)), np.tile(log.y, (50, 1))
+    model = kelpie.DynamicsModel(**SMALL).fit(log.X, log.y)
+    stop = threading.Event()
+
+    def learn():
+        begin = 1e6
+        while not stop.is_set():
+            begin += len(X)
+            model._model.update(X, y, begin + np.arange(len(X), dtype=float))
+
+    def in_child(call):
+        child = os.fork()
+        if child == 0:
+            signal.alarm(30)  # ends a child that waits
+            try:
+                call()
+                os._exit(0)
+            except RuntimeError as error:
+                os._exit(3 if "spawn" in str(error) else 4)
+            finally:
+                os._exit(5)
+        return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+    learner = threading.Thread(target=learn)
+    learner.start()
+    try:
+        calls = [lambda: model.predict(log.X), lambda: model.status_, lambda: pickle.dumps(model),
+                 lambda: model.partial_fit(log.X, log.y)]
+        codes = [in_child(call) for call in 2 * calls]
+        # A model of its own is whole, wherever it was made.
+        assert in_child(lambda: kelpie.DynamicsModel(**SMALL).fit(log.X, log.y)) == 0
+    finally:
+        stop.set()
+        learner.join()
+    assert set(codes) <= {0, 3} and 3 in codes, codes  # 0: between two turns of the learner
+    assert [in_child(call) for call in calls] == [0, 0, 0, 0]
 
 
 def test_ctrl_c_ends_a_report(tmp_path):

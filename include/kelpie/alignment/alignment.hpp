@@ -159,11 +159,13 @@ struct Alignment {
 /// begin a stretch at rest in its first command. Rows leave in their order, each once.
 class AlignedRows {
  public:
+  static constexpr int kMostRows = 1'000'000;  ///< of a shift, either way
+
   /// `rows`: how far commands are taken from later rows, below 0 from earlier rows. `commands`:
   /// places among the `inputs`. `actuators`: one per command, or none. A gap in time ends a
   /// stretch: a step back, or longer than kLongestStep / `rate_hz` (core/seconds.hpp). Throws
-  /// InputError on a rate not above 0, a command beyond the inputs, another number of actuators,
-  /// and as ActuatorState.
+  /// InputError on a shift beyond kMostRows, a rate not above 0, a command beyond the inputs,
+  /// another number of actuators, and as ActuatorState.
   AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs, std::size_t targets,
               double rate_hz, std::span<const Actuator> actuators = {});
 

@@ -19,7 +19,8 @@ struct Place {
 /// exit code 2.
 class InputError : public std::runtime_error {
  public:
-  /// The text reads "file:line: field: message", without the parts that don't apply.
+  /// The text reads "file:line: field: message", without the parts that don't apply. Parts that are
+  /// longer than a message can show are cut.
   InputError(const Place& place, const std::string& message);
   InputError(std::string_view field, const std::string& message);  ///< Without a file.
   explicit InputError(const std::string& message);                 ///< Without a place.

@@ -161,6 +161,12 @@ Searched search(const AlignmentProblem& problem) {
   return searched;
 }
 
+int within_bounds(int rows) {
+  require(rows >= -AlignedRows::kMostRows && rows <= AlignedRows::kMostRows, "rows",
+          "have to be within ±" + std::to_string(AlignedRows::kMostRows));
+  return rows;
+}
+
 }  // namespace
 
 int Alignment::rows_at(double rate_hz) const {
@@ -242,7 +248,7 @@ Alignment Alignment::at(double rate_hz) const {
 
 AlignedRows::AlignedRows(int rows, std::vector<std::size_t> commands, std::size_t inputs,
                          std::size_t targets, double rate_hz, std::span<const Actuator> actuators)
-    : shift_(rows),
+    : shift_(within_bounds(rows)),
       distance_(static_cast<std::size_t>(std::abs(rows))),
       commands_(std::move(commands)),
       inputs_(inputs),

@@ -1,33 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kelpie/core/error.hpp"
 
+#include "core/text.hpp"
+
 namespace kelpie {
 namespace {
 
-// what() ends at the first NUL, and names out of files may begin with one.
-std::string with_visible_nuls(const std::string& text) {
-  std::string visible;
-  for (const char character : text) {
-    character == '\0' ? visible += "\\0" : visible += character;
-  }
-  return visible;
-}
+// Letters that a message shows.
+constexpr std::size_t kMostOfPath = 400;
+constexpr std::size_t kMostOfField = 200;
 
 std::string locate(const Place& place, const std::string& message) {
-  std::string text = place.file;
+  std::string text = printable(place.file, kMostOfPath);
   if (place.line > 0) {
     text += (text.empty() ? "line " : ":") + std::to_string(place.line);
   }
   if (!place.field.empty()) {
-    text += (text.empty() ? "" : ": ") + place.field;
+    text += (text.empty() ? "" : ": ") + printable(place.field, kMostOfField);
   }
-  return with_visible_nuls(text.empty() ? message : text + ": " + message);
+  return text.empty() ? message : text + ": " + message;
 }
 
 }  // namespace
 
 InputError::InputError(const Place& place, const std::string& message)
-    : std::runtime_error(locate(place, message)), place_(place), message_(message) {}
+    : std::runtime_error(locate(place, shortened(message))),
+      place_(place),
+      message_(shortened(message)) {}
 
 InputError::InputError(std::string_view field, const std::string& message)
     : InputError(Place{.file = {}, .line = 0, .field = std::string(field)}, message) {}

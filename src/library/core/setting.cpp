@@ -25,7 +25,7 @@ std::string number_text(double value) {
 double number_setting(std::string_view name, std::string_view text) {
   double value = 0.0;
   if (!parse_number(trimmed(text), value)) {
-    throw InputError(field(name), "'" + std::string(text) + "' is not a number");
+    throw InputError(field(name), "'" + printable(text) + "' is not a number");
   }
   return value;
 }

@@ -104,6 +104,22 @@ std::string printable(std::string_view text, std::size_t most) {
   return shown;
 }
 
+std::string shortened(std::string_view text, std::size_t most) {
+  if (text.size() <= most) {
+    return std::string(text);
+  }
+  const auto is_within_letter = [&](std::size_t at) {
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+  };
+  std::size_t head = most / 2;
+  std::size_t tail = text.size() - most / 2;
+  for (; head > 0 && is_within_letter(head); --head) {
+  }
+  for (; is_within_letter(tail); ++tail) {
+  }
+  return std::string(text.substr(0, head)) + " … " + std::string(text.substr(tail));
+}
+
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
   constexpr std::size_t kLongest = 200;  // longer words are no slip of a key, and cost too much
   if (word.size() > kLongest) {
@@ -125,7 +141,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
 
 std::string unknown_name(std::string_view name, std::string_view kind,
                          std::span<const std::string> known) {
-  std::string text = "'" + std::string(name) + "' is no " + std::string(kind);
+  std::string text = "'" + printable(name) + "' is no " + std::string(kind);
   text += did_you_mean(name, known);
   return known.empty() ? text : text + "; there are " + join_text(known, ", ");
 }

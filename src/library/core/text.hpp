@@ -24,6 +24,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// bytes that are no UTF-8, and an ellipsis after the first `most` letters of a longer text.
 std::string printable(std::string_view text, std::size_t most = 80);
 
+/// The beginning and the end of a text of more than `most` bytes, with an ellipsis in place of what
+/// lies between; a shorter text as it is.
+std::string shortened(std::string_view text, std::size_t most = 1'200);
+
 /// " (did you mean 'x'?)" for the candidate nearest to `word`; "" where more than a third of the
 /// letters differ.
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);

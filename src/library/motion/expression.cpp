@@ -55,9 +55,8 @@ class ExpressionParser : TextScanner {
   });
 
   [[noreturn]] void fail(const std::string& what) const {
-    constexpr std::size_t kShown = 200;
-    const std::string shown(text_.substr(0, kShown));
-    throw InputError("'" + shown + (shown.size() < text_.size() ? "…'" : "'"),
+    constexpr std::size_t kShown = 190;
+    throw InputError("'" + printable(text_, kShown) + "'",
                      what + " (at character " + std::to_string(position_ + 1) + ")");
   }
 
@@ -142,17 +141,32 @@ class ExpressionParser : TextScanner {
       expect('|');
       emit(Code::abs);
     } else if (take('\'')) {
-      const std::size_t end = text_.find('\'', position_);
-      if (end == std::string_view::npos) {
-        fail("a quote is not closed");
-      }
-      const std::string_view name = text_.substr(position_, end - position_);
+      const std::size_t begin = position_;
+      const std::string name = quoted_name();
+      const std::size_t end = std::exchange(position_, begin);  // what is wrong stands there
       column(name);
-      position_ = end + 1;
+      position_ = end;
     } else if (std::isdigit(static_cast<unsigned char>(first)) != 0 || first == '.') {
       emit(Code::number, number());
     } else {
       word();
+    }
+  }
+
+  // Behind the first quote, up to the last one. A quote of the name stands twice.
+  std::string quoted_name() {
+    std::string name;
+    while (true) {
+      const std::size_t end = text_.find('\'', position_);
+      if (end == std::string_view::npos) {
+        fail("a quote is not closed");
+      }
+      name += text_.substr(position_, end - position_);
+      position_ = end + 1;
+      if (!text_.substr(position_).starts_with('\'')) {
+        return name;
+      }
+      name += text_[position_++];
     }
   }
 

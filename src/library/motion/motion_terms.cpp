@@ -17,9 +17,14 @@ constexpr std::size_t kFewCommands = 3;  // whose pairs are terms: rudders behin
 std::string quoted(const std::string& name) {
   const bool word = std::ranges::all_of(
       name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; });
-  return word && !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0
-             ? name
-             : "'" + name + "'";
+  if (word && !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0) {
+    return name;
+  }
+  std::string text = "'";
+  for (const char letter : name) {
+    text.append(letter == '\'' ? 2 : 1, letter);
+  }
+  return text + "'";
 }
 
 // An angle in radians as a formula names it.

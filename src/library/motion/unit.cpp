@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/angle.hpp"
+#include "core/text.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "motion/text_scanner.hpp"
@@ -88,7 +89,7 @@ class UnitParser : TextScanner {
   static constexpr int kDeepest = 20;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError("'" + given_ + "' is not a unit such as m/s^2: " + what);
+    throw InputError("'" + printable(given_) + "' is not a unit such as m/s^2: " + what);
   }
 
   Unit product(int depth) {

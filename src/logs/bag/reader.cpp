@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "bag/tuning.hpp"
+#include "core/text.hpp"
 
 namespace kelpie::bag {
 namespace {
@@ -23,7 +24,7 @@ std::string passed_over_text(const std::map<std::string, std::size_t>& by_topic)
   }
   return fmt::format(
       "passed over: {} message{} with a wrong checksum, {} of {} (--strict refuses)\n", all,
-      all == 1 ? "" : "s", most->second, most->first);
+      all == 1 ? "" : "s", most->second, printable(most->first));
 }
 
 }  // namespace

@@ -360,14 +360,17 @@ class UlogReader final : public FileReader {
   std::int64_t last_ns_ = 0;
 };
 
-// By the first message of a GPS with the date; 0: there is none.
-std::int64_t begin_of(std::span<const std::byte> bytes, const std::string& file) {
-  UlogReader all(bytes, file, ReadMode::recover, 0);
+// By the first message of a GPS with the date; 0: there is none, or damage before.
+std::int64_t begin_of(std::span<const std::byte> bytes, const std::string& file,
+                      ReadMode mode) try {
+  UlogReader all(bytes, file, mode, 0);
   std::int64_t begin_ns = 0;
   for (Message message; begin_ns == 0 && all.next(message);) {
     begin_ns = ulog_begin_ns(all.topics()[message.topic], message.data);
   }
   return begin_ns;
+} catch (const InputError&) {
+  return 0;
 }
 
 }  // namespace
@@ -378,7 +381,7 @@ bool begins_as_ulog(std::string_view beginning) {
 
 std::unique_ptr<MessageReader> read_ulog(std::span<const std::byte> bytes, const std::string& file,
                                          ReadMode mode) {
-  return std::make_unique<UlogReader>(bytes, file, mode, begin_of(bytes, file));
+  return std::make_unique<UlogReader>(bytes, file, mode, begin_of(bytes, file, mode));
 }
 
 }  // namespace kelpie::bag

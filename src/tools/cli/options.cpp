@@ -23,7 +23,7 @@ CLI::Validator no_assignment() {
             const bool is_value = text.find('=') != std::string::npos &&
                                   text.find_first_of("*?[{") == std::string::npos &&
                                   !std::filesystem::exists(text, none);
-            return is_value ? "'" + text +
+            return is_value ? "'" + printable(text) +
                                   "' is no file; to give several settings, repeat the option, as "
                                   "in --set a=1 --set b=2"
                             : std::string();
@@ -176,7 +176,7 @@ CLI::Validator within(double low, double high) {
   return {[=](const std::string& text) {
             double value = 0.0;
             const bool is_good = parse_number(text, value) && value >= low && value <= high;
-            return is_good ? std::string() : "'" + text + "' " + range;
+            return is_good ? std::string() : "'" + printable(text) + "' " + range;
           },
           ""};
 }

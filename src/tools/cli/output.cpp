@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "chart/wording.hpp"
+#include "core/text.hpp"
 #include "file/atomic_file.hpp"
 #include "kelpie/core/error.hpp"
 
@@ -127,7 +128,12 @@ void print_said(std::string_view text) {
 }
 
 void print_warning(std::string_view text) {
-  print_safely(printing.streams.err, text);
+  while (!text.empty()) {
+    const std::size_t length = std::min(text.find('\n'), text.size());
+    print_safely(printing.streams.err,
+                 shortened(text.substr(0, length)) + std::string(text.substr(length, 1)));
+    text.remove_prefix(std::min(length + 1, text.size()));
+  }
 }
 
 void finish_output() {

@@ -13,6 +13,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -27,6 +28,7 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
+constexpr std::size_t kMostSaid = 2'000;  // bytes of an error
 
 // The parser takes -1 for the largest number there is, and names no type for what it doesn't take.
 void check_numbers(CLI::App& app) {
@@ -35,7 +37,8 @@ void check_numbers(CLI::App& app) {
         [=](const std::string& text) mutable {
           const char* const end = text.data() + text.size();
           const auto [at, error] = std::from_chars(text.data(), end, number);
-          return error == std::errc() && at == end ? "" : "'" + text + "' has to be " + kind;
+          return error == std::errc() && at == end ? ""
+                                                   : "'" + printable(text) + "' has to be " + kind;
         },
         "");
   };
@@ -78,21 +81,22 @@ std::string unknown_word(const CLI::App& app) {
   for (const std::string& word : app.remaining()) {
     const std::string name = word.substr(0, word.find('='));
     if (name.starts_with("--")) {
-      return "There is no option " + name + did_you_mean(name, option_names(app)) + "\n";
+      return "There is no option " + printable(name) + did_you_mean(name, option_names(app)) + "\n";
     }
     const std::vector<std::string> commands = command_names(app);
     if (parsed.empty() && !commands.empty() && !name.starts_with('-')) {
-      return "There is no command '" + name + "'" + did_you_mean(name, commands) + "; there are " +
-             join_text(commands, ", ") + "\n";
+      return "There is no command '" + printable(name) + "'" + did_you_mean(name, commands) +
+             "; there are " + join_text(commands, ", ") + "\n";
     }
   }
   return parsed.empty() ? "" : unknown_word(*parsed.front());
 }
 
 std::string failure_message(const CLI::App* app, const CLI::Error& error) {
-  const std::string said = CLI::FailureMessage::simple(app, error);
+  const std::string_view why = error.what();
+  const std::string where_help_is = CLI::FailureMessage::simple(app, error).substr(why.size() + 1);
   const std::string unknown = unknown_word(*app);
-  return unknown.empty() ? said : unknown + said.substr(said.find('\n') + 1);
+  return (unknown.empty() ? printable(why, kMostSaid) + "\n" : unknown) + where_help_is;
 }
 
 // A command that does nothing by itself and was given nothing to do: its help, as for `kelpie`.
@@ -108,7 +112,7 @@ const CLI::App* idle_command(const CLI::App& app) {
 // What was said before an error appears before it.
 int failed(int code, const std::exception& error) {
   static_cast<void>(std::fflush(streams().out));  // it fails already
-  print_safely(streams().err, fmt::format("kelpie: {}\n", error.what()));
+  print_safely(streams().err, "kelpie: " + shortened(error.what(), kMostSaid) + "\n");
   return code;
 }
 
@@ -208,7 +212,7 @@ int ended(const CLI::App& app, const CLI::Error& error) {
   std::ostringstream err;
   const int code = app.exit(error, out, err);
   print_safely(streams().out, out.str());
-  print_safely(streams().err, err.str());
+  print_safely(streams().err, shortened(err.str(), kMostSaid));
   return code == 0 ? 0 : kBadInput;
 }
 

@@ -74,7 +74,7 @@ std::pair<std::string, std::string> key_and_value(const std::string& assignment,
   const std::size_t sign = assignment.find('=');
   if (sign == std::string::npos || sign == 0) {
     throw InputError({.file = option, .line = 0, .field = {}},
-                     "'" + assignment + "' is not of the form key=value");
+                     "'" + printable(assignment) + "' is not of the form key=value");
   }
   return {std::string(trimmed(assignment.substr(0, sign))),
           std::string(trimmed(assignment.substr(sign + 1)))};

@@ -18,7 +18,7 @@ TEST(InputError, SaysWhereAsFarAsItIsKnown) {
 }
 
 TEST(InputError, DoesNotEndAtANulOfTheInput) {
-  EXPECT_STREQ(InputError(std::string("\0name", 5), "bad").what(), "\\0name: bad");
+  EXPECT_STREQ(InputError(std::string("\0name", 5), "bad").what(), "?name: bad");
 }
 
 TEST(InputError, NamesTheFileOnceWhereverItIsCaught) {

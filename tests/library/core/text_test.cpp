@@ -34,6 +34,14 @@ TEST(Text, JoinKeepsEmptyParts) {
   EXPECT_EQ(join_text(split_text(text, ','), ","), text);
 }
 
+TEST(Text, ALongTextIsShortenedOnce) {
+  EXPECT_EQ(shortened("abcdef", 6), "abcdef");
+  EXPECT_EQ(shortened("abcdefg", 6), "abc … efg");
+  EXPECT_EQ(shortened("aaéaaaaéaa", 6), "aa … aa");  // no half letters
+  const std::string once = shortened(std::string(5'000, 'a') + std::string(5'000, 'b'));
+  EXPECT_EQ(shortened(once), once);
+}
+
 TEST(Text, SuggestsOnlyWhatIsNear) {
   const std::vector<std::string> names{"gamma", "epsilon", "buffer"};
   EXPECT_EQ(did_you_mean("gama", names), " (did you mean 'gamma'?)");

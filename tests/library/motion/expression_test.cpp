@@ -61,6 +61,8 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint("max(u)"), "'max(u)': ',' is missing (at character 6)");
   EXPECT_EQ(complaint("u v"), "'u v': 'v' is not expected here (at character 3)");
   EXPECT_EQ(complaint("u^v"), "'u^v': a number >= 0 is expected (at character 3)");
+  EXPECT_NE(complaint("'it''s'''+u").find(": 'it's'' is no column"), std::string::npos);
+  EXPECT_EQ(complaint("'u''"), "''u''': a quote is not closed (at character 5)");
   EXPECT_EQ(complaint("'u"), "''u': a quote is not closed (at character 2)");
   EXPECT_EQ(complaint("u § v"), "'u § v': '\xC2' is not expected here (at character 3)");
   EXPECT_NE(complaint(std::string(500, '(') + "u").find("nested too deeply"), std::string::npos);

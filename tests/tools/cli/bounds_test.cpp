@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/running.hpp"
@@ -99,6 +101,82 @@ TEST_F(Bounds, JsonIsNeitherDeepNorOfManyKeys) {
           "study fleet.toml --against bad.json"}) {
       testing::expect_refused(run(command), "bad.json: file: has more than " + message);
     }
+  }
+}
+
+TEST_F(Bounds, NoMessageEchoesAMegabyteOrTheLinesOfAName) {
+  const std::string much(1'900'000, 'a');
+  const std::string lines = "a\nkelpie: all is well\n\x1b[31m";
+  for (const std::string& text : {much, lines, much + lines}) {
+    const auto toml = [](const std::string& value) { return "\"\"\"" + value + "\"\"\"\n"; };
+    const std::string key = std::string("'") + (text == much ? text : "a") + "'";
+    write("term.toml", "terms = [" + toml(text) + "]\n");
+    write("unit.toml", "[log]\nunits = {u = " + toml(text) + "}\n");
+    write("value.toml", "solver = " + toml(text));
+    write("number.toml", "gamma = " + toml(text));
+    write("column.toml", "[log]\ninputs = [" + toml(text) + "]\n");
+    write("key.toml", key + " = 1\n");
+    write("deep_key.toml", "[log]\n" + key + " = 1\n");
+    write("broken.toml", key + " = \n");
+    write("column.csv",
+          "t,\"" + text.substr(0, 900'000) + "\",\"" + text.substr(0, 900'000) + "\"\n1,2,3\n");
+    nlohmann::json model{{"format", text}, {"version", 1}};
+    write("format.json", model.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    const std::vector<std::vector<std::string>> doors{
+        {text},
+        {"learn", "log.csv", "--" + text},
+        {"learn", "log.csv", "--rate", text},
+        {"learn", "log.csv", "--threads", text},
+        {"learn", "log.csv", "--time", text},
+        {"learn", "log.csv", "--inputs", text, "--targets", "udot"},
+        {"learn", "log.csv", "--set", text},
+        {"learn", "log.csv", "--set", text + "=1"},
+        {"learn", "log.csv", "--set", "gamma=" + text},
+        {"learn", "log.csv", "--set", "terms=" + text},
+        {"learn", "log.csv", "--set", "preset=" + text},
+        {"learn", "log.csv", "--split", text},
+        {"learn", "log.csv", "--config", "term.toml"},
+        {"learn", "log.csv", "--config", "unit.toml"},
+        {"learn", "log.csv", "--config", "value.toml"},
+        {"learn", "log.csv", "--config", "number.toml"},
+        {"learn", "log.csv", "--config", "column.toml"},
+        {"learn", "log.csv", "--config", text},
+        {"learn", text},
+        {"inspect", text},
+        {"inspect", "log.csv", text},
+        {"inspect", "column.csv"},
+        {"convert", text, "--out", "x.mcap"},
+        {"predict", "log.csv", "--model", "format.json"},
+        {"predict", "log.csv", "--model", text},
+        {"plan", "format.json", "--range", text},
+        {"vehicle", "check", text},
+    };
+    std::vector<std::vector<std::string>> all = doors;
+    if (text == much) {
+      for (const char* const file : {"key.toml", "deep_key.toml", "broken.toml"}) {
+        all.push_back({"learn", "log.csv", "--config", file});
+      }
+    }
+    for (const std::vector<std::string>& words : all) {
+      const testing::Outcome outcome = testing::kelpie(folder_.path(), words);
+      const std::string door = words[0] + " " + words.back().substr(0, 20);
+      EXPECT_EQ(outcome.exit_code, 2) << door << outcome.err.substr(0, 300);
+      EXPECT_LE(outcome.err.size(), 2'100U) << door;
+      EXPECT_LE(std::ranges::count(outcome.err, '\n'), 4) << door << outcome.err;
+      EXPECT_EQ(outcome.err.find("\nkelpie: all is well"), std::string::npos) << outcome.err;
+      EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos) << outcome.err;
+    }
+  }
+}
+
+TEST_F(Bounds, AColumnMayBeCalledAnything) {
+  for (const char* const name : {"n's", "'", "''n'", "n]]", "*/n", "1", "--n", "|n|", "n;u"}) {
+    std::string text = testing::little_log(120);
+    text.replace(text.find(",n,"), 3, std::string(",") + name + ",");
+    write("named.csv", text);
+    succeeded(run("learn named.csv --align none --set preset=small --set warmup=20 --out named"));
+    succeeded(run("predict named.csv --model named/model.json --out named.out.csv"));
+    succeeded(run("export named/model.json --c named.c"));
   }
 }
 

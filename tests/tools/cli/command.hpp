@@ -58,15 +58,20 @@ inline std::vector<std::string> words_of(const std::string& arguments) {
   return words;
 }
 
-/// Runs the program with `arguments` in `folder`, within this process.
-inline Outcome kelpie(const std::filesystem::path& folder, const std::string& arguments) {
+/// Runs the program with these words in `folder`, within this process.
+inline Outcome kelpie(const std::filesystem::path& folder, const std::vector<std::string>& words) {
   const std::filesystem::path here = std::filesystem::current_path();
   std::filesystem::current_path(folder);
   const cli::TextStream out;
   const cli::TextStream err;
-  const int code = cli::program(words_of(arguments), {.out = out.file(), .err = err.file()});
+  const int code = cli::program(words, {.out = out.file(), .err = err.file()});
   std::filesystem::current_path(here);
   return {code, out.text(), err.text()};
+}
+
+/// The same with the words of `arguments`.
+inline Outcome kelpie(const std::filesystem::path& folder, const std::string& arguments) {
+  return kelpie(folder, words_of(arguments));
 }
 
 /// Runs the built program in a process of its own, without a terminal.
