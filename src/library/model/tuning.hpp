@@ -150,7 +150,7 @@ inline constexpr struct ModelTuning {
     std::size_t places = 901;   ///< up to so many samples; more samples add work squared
     std::int64_t growth = 200;  ///< part of the limit added per rejected sample: half a percent
     std::int64_t decay = 8000;  ///< part of the addition lost per update; by hand
-    std::int64_t most = 1000;   ///< times the first limit; by hand
+    std::int64_t most = 20;     ///< times the first limit: 100 ms; by hand, 7 in the hardest log
   } work;
 } kModelTuning;
 

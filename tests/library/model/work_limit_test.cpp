@@ -43,7 +43,7 @@ TEST(WorkLimit, GrowsWhereSamplesAreTurnedAwayAndShrinksAgain) {
   for (int i = 0; i < 10'000; ++i) {
     limit.learned(true);
   }
-  EXPECT_LE(limit.most(), 1000 * least);
+  EXPECT_LE(limit.most(), 20 * least);  // also as a forged state may claim
   for (int i = 0; i < 200'000; ++i) {
     limit.learned(false);
   }
