@@ -49,6 +49,9 @@ TEST_F(LiveCommand, ANewModelBeginsWithAnEarlierAsInLearn) {
   EXPECT_EQ(model_of("out"), model_of("of_learn"));
   EXPECT_NE(model_of("out"), model_of("first"));
   expect_refused("--replay dive.csv --fresh --nominal nothing.json --out out", "nothing.json");
+  write("deep.json", "{\"more\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}");
+  expect_refused("--replay dive.csv --fresh --nominal deep.json --out out",
+                 "deep.json: file: has more than 100 lists and objects within each other");
 }
 
 TEST_F(LiveCommand, ColumnsOfATableMayHaveAnyName) {

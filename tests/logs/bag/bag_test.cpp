@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bag/bags.hpp"
+#include "bag/endless_db3.hpp"
 #include "bag/mcap_writer.hpp"
 #include "bag/open_bag.hpp"
 #include "bag/series.hpp"
@@ -189,57 +190,16 @@ TEST(Bag, ADamagedPageOfAnSqliteFileCostsItsNeighboursOnly) {
   EXPECT_FALSE(content.losses.empty());
 }
 
-constexpr std::size_t kPage = 4096;
-
-// An interior page of an SQLite table, of 500 cells that name the same page, counted from 1.
-std::string page_of_one_child(std::uint32_t child) {
-  constexpr std::size_t kCells = 500;
-  std::string page(kPage, '\0');
-  const auto put = [&page](std::size_t at, std::size_t bytes, std::size_t value) {
-    for (; bytes > 0; --bytes, value /= 256) {
-      page[at + bytes - 1] = static_cast<char>(value % 256);
-    }
-  };
-  constexpr std::size_t kCell = 5;
-  put(0, 1, 5);  // interior
-  put(3, 2, kCells);
-  put(5, 2, kPage - kCells * kCell);
-  put(8, 4, child);
-  for (std::size_t cell = 1; cell <= kCells; ++cell) {
-    put(10 + 2 * cell, 2, kPage - cell * kCell);
-    put(kPage - cell * kCell, 4, child);
-    page[kPage - cell * kCell + 4] = 1;
-  }
-  return page;
-}
-
 TEST(Bag, PagesOfAnSqliteFileThatShareAChildHaveNoEndlessRows) {
   const TemporaryFolder folder;
   // Rows of messages are met one by one; definitions that are no ros2msg are passed over by SQLite.
   for (const std::size_t root : {3UL, 4UL}) {
     const fs::path path = folder / "a.db3";
-    fs::remove(path);
-    write_db3(path, small_topics(), small_messages(2));
-    sqlite3* raw = nullptr;
-    ASSERT_EQ(sqlite3_open(path.c_str(), &raw), SQLITE_OK);
-    sqlite3_exec(raw,
-                 "CREATE TABLE message_definitions(topic_type, encoding, "
-                 "encoded_message_definition); INSERT INTO message_definitions VALUES(1, 2, 3)",
-                 nullptr, nullptr, nullptr);
-    sqlite3_close(raw);
-    std::string file = testing::read_text(path);
-    ASSERT_EQ(file.size(), 4 * kPage);
-    file += file.substr((root - 1) * kPage, kPage);
-    for (std::uint32_t level = 5; level < 10; ++level) {
-      file += page_of_one_child(level);
-    }
-    file.replace((root - 1) * kPage, kPage, page_of_one_child(10));
-    file[31] = 10;  // pages
-    write_text(path, file);
+    const std::size_t bytes = testing::write_endless_db3(path, root);
     expect_refusal(path, "holds more rows than can come of its 40960 bytes");
     if (root == 3) {
       const auto content = content_of(*bag::open_bag(path, bag::ReadMode::recover));
-      EXPECT_LE(content.messages.size(), file.size());
+      EXPECT_LE(content.messages.size(), bytes);
       EXPECT_EQ(content.losses.size(), 1U);
     }
   }

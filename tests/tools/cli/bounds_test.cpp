@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bag/endless_db3.hpp"
 #include "cli/command.hpp"
 #include "cli/running.hpp"
 
@@ -102,6 +103,15 @@ TEST_F(Bounds, JsonIsNeitherDeepNorOfManyKeys) {
       testing::expect_refused(run(command), "bad.json: file: has more than " + message);
     }
   }
+}
+
+TEST_F(Bounds, ARecordingHasNoMoreRowsThanBytes) {
+  testing::write_endless_db3(folder_ / "endless.db3", 3);
+  for (const char* const command : {"inspect endless.db3", "learn endless.db3"}) {
+    expect_refused(command, "holds more rows than can come of its 40960 bytes");
+  }
+  const testing::Outcome outcome = testing::succeeded(run("inspect endless.db3 --recover"));
+  EXPECT_NE((outcome.out + outcome.err).find("holds more rows than"), std::string::npos);
 }
 
 TEST_F(Bounds, NoMessageEchoesAMegabyteOrTheLinesOfAName) {

@@ -2,6 +2,7 @@
 // A host of FMI 2.0: units are unpacked, the shared object is loaded by the names of the standard,
 // and the numbers are compared with those of the library.
 #include "fmu/fmu_file.hpp"
+#include "fmu/guid.hpp"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -146,6 +147,10 @@ class Host {
     return function<decltype(fmi2Instantiate)>("fmi2Instantiate")(
         "boat", fmi2CoSimulation, guid.c_str(),
         ("file://" + folder_.path().string() + "/resources").c_str(), &callbacks_, 0, 1);
+  }
+
+  void put_model(const std::string& text) const {
+    std::ofstream(folder_ / "resources/model.json", std::ios::binary) << text;
   }
 
   const std::string& description() const { return description_; }
@@ -379,6 +384,16 @@ TEST(Fmu, WhatIsNoCallIsRefusedAndChangesNothing) {
   EXPECT_EQ(instance.step(0.1), fmi2OK);
   EXPECT_EQ(instance.call("fmi2Terminate"), fmi2OK);
   EXPECT_EQ(instance.step(0.1), fmi2Error);
+}
+
+TEST(Fmu, AModelNestedWithoutEndIsRefused) {
+  const Host host(boat());
+  const std::string deep =
+      "{\"more\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}";
+  host.put_model(deep);
+  EXPECT_EQ(host.instantiate(fmu::guid_of(deep)), nullptr);
+  EXPECT_NE(last_message.find("lists and objects within each other"), std::string::npos)
+      << last_message;
 }
 
 TEST(Fmu, TheDescriptionNamesEveryVariableAtItsReference) {
