@@ -15,7 +15,7 @@ ten seconds without an answer or a prediction, more memory than --memory [MB] ab
 the attack, a prediction outside of the accelerations seen, fewer samples learned during the attack
 than half of those that the vehicle sent (than 95 % during rubbish), at the end R² below 0.5 or more
 than 0.1 below that of least squares on the same samples, predictions after the attack that explain
-less than 0.3 of the variance of the vehicle's accelerations. The machine may be busy: samples, not
+less than half of the variance of the vehicle's accelerations (0.3 after rubbish and replay). The machine may be busy: samples, not
 seconds, are counted.
 """
 
@@ -408,9 +408,11 @@ def attack_replay(run, vehicle, count, chance):
     send_datagrams(run, repeats(lambda: vehicle.line.sent, chance), count, sockets, chance)
 
 
-# Of each attack: what happens, how often, and the share of the rows that is learned meanwhile.
-ATTACKS = {"web": (attack_web, 2_000, 0.5), "mavlink": (attack_mavlink, 100_000, 0.5),
-           "rubbish": (attack_rubbish, 10_000, 0.95), "replay": (attack_replay, 20_000, 0.5)}
+# Of each attack: what happens, how often, the share of the rows that is learned meanwhile, and the
+# share of the variance that predictions explain later (less where the drive is short).
+ATTACKS = {"web": (attack_web, 2_000, 0.5, 0.5), "mavlink": (attack_mavlink, 100_000, 0.5, 0.5),
+           "rubbish": (attack_rubbish, 10_000, 0.95, 0.3),
+           "replay": (attack_replay, 20_000, 0.5, 0.3)}
 
 
 def flood_beforehand(run, count, chance):
@@ -443,7 +445,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     chance = random.Random(options.seed)
-    attack, count, share = ATTACKS[options.attack]
+    attack, count, share, explained = ATTACKS[options.attack]
     count = options.count or count
     signs = attack is attack_replay
     with tempfile.TemporaryDirectory(prefix="kelpie_attack_") as folder:
@@ -480,7 +482,7 @@ def main():
     check(later >= LATER, f"{later:.0f} samples learned after the attack")
     check(all(r2[axis] > max(0.5, squares_r2[axis] - 0.1) for axis in r2),
           f"R², where least squares has {text(squares_r2)}")
-    check(all(value > 0.3 for value in said_r2.values()), "predictions beside the truth")
+    check(all(value > explained for value in said_r2.values()), "predictions beside the truth")
     print(f"{count} in {passed_s:.0f} s; memory {memory:.0f} MB before, {most:.0f} MB at most; "
           f"slowest honest answer {run.slowest_s:.2f} s; {meanwhile:.0f} samples learned of "
           f"{ended_s - drove_s:.0f} s of driving, {later:.0f} later; {vehicle.predictions} "

@@ -15,7 +15,7 @@ namespace {
 void check_shape(std::string_view text, const std::string& source) {
   std::array<std::size_t, kDeepestJson + 1> keys{};  // of the open lists and objects
   std::size_t depth = 0;
-  const auto require = [&](bool holds, std::size_t most, const std::string& what) {
+  const auto require = [&](bool holds, std::size_t most, const char* what) {
     if (!holds) {
       throw InputError(
           {.file = source, .field = "file"},

@@ -19,11 +19,12 @@ std::string kind_of(const std::string& event) {
 }  // namespace
 
 bool EventLimit::passes(const std::string& event, Time now) {
-  auto found = minutes_.find(kind_of(event));
+  const std::string kind = kind_of(event);
+  auto found = minutes_.find(kind);
   if (found == minutes_.end()) {
     // Beyond the most kinds, all others are one.
     const bool has_room = minutes_.size() < kTuning.most_event_kinds;
-    found = minutes_.try_emplace(has_room ? kind_of(event) : "", Minute{.began = now}).first;
+    found = minutes_.try_emplace(has_room ? kind : "", Minute{.began = now}).first;
   }
   Minute& minute = found->second;
   minute.last = event;

@@ -55,7 +55,7 @@ class Mission {
 
   // Drives for a tick. False at the end.
   bool step() {
-    while (next_phase_ == 0 || phase_tick_ == phase_ticks_) {
+    while (phase_tick_ == phase_ticks_) {
       if (next_phase_ == scenario_.phases.size()) {
         return false;
       }
