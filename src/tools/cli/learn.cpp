@@ -220,6 +220,7 @@ study::StreamResult learn_with_progress(const LearnArguments& options, const stu
     });
   };
   stream.resume = earlier.stream;
+  stream.resume_file = earlier.file;
   return study::learn(plan, model, stream);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "kelpie/core/archive.hpp"
+#include "kelpie/core/error.hpp"
 #include "study/metrics.hpp"
 #include "study/result_fields.hpp"
 #include "study/terms.hpp"
@@ -292,9 +293,11 @@ class StreamRun {
       axes_.emplace_back(data, split, axis, model.axis(axis));
     }
     if (!options.resume.empty()) {
-      Archive archive(options.resume);
-      visit(archive);
-      archive.finish();
+      in_file(options.resume_file, [&] {
+        Archive archive(options.resume);
+        visit(archive);
+        archive.finish();
+      });
     }
   }
 

@@ -31,6 +31,7 @@ struct StreamOptions {
   /// State from `save`, to resume the stream. Requires the same data, split and options, and the
   /// model of that moment. Empty: start from the first sample.
   std::string_view resume{};
+  std::string resume_file{};  ///< source file of `resume`, for messages
 };
 
 /// The paper's evaluation. The model learns the training rows of `split` in the order of time, in

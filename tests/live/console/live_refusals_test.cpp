@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "cli/damaged_checkpoint.hpp"
 #include "console/live_command.hpp"
 #include "live/mission.hpp"
 
@@ -91,6 +92,13 @@ TEST_F(LiveCommand, ACheckpointOfAnotherConfigurationIsRefused) {
   write("x.toml", mission_config());
   expect_refused("--config x.toml --from mission.mcap --out out --set buffer=70", "buffer");
   EXPECT_EQ(live("--speed max --out out --set buffer=70 --fresh").exit_code, 0);
+}
+
+TEST_F(LiveCommand, ADamagedStateIsRefusedByTheNameOfItsFile) {
+  write_mission(60.0, mission_config("", "align = \"none\""));
+  testing::succeeded(live("--speed max --out out"));
+  testing::expect_refused_by_name(folder_.path(), "out/checkpoint.kelpie",
+                                  [&] { return live("--speed max --out out"); });
 }
 
 TEST_F(LiveCommand, ACheckLeavesNothingBehind) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/damaged_checkpoint.hpp"
 #include "cli/running.hpp"
 #include "format/checkpoint_file.hpp"
 #include "kelpie/core/random.hpp"
@@ -100,6 +101,17 @@ TEST_F(Checkpoint, ADamagedOneIsPassedOverAndBothRefused) {
   EXPECT_EQ(result_in("whole"), before);
   write_text(folder_ / "whole" / format::kPreviousCheckpointName, "");
   expect_refused("--out whole --resume", "checkpoint.previous.kelpie: is empty");
+}
+
+TEST_F(Checkpoint, ADamagedStateIsRefusedByTheNameOfItsFile) {
+  write("log.csv", little_log(300));
+  testing::succeeded(learn("--out out --checkpoint-every 700"));
+  testing::succeeded(learn("--out from --checkpoint-every 700"));
+  testing::expect_refused_by_name(folder_.path(), "out/checkpoint.kelpie",
+                                  [&] { return learn("--out out --resume"); });
+  testing::expect_refused_by_name(folder_.path(), "from/checkpoint.kelpie", [&] {
+    return run("learn log.csv --from from/checkpoint.kelpie --out next");
+  });
 }
 
 TEST_F(Checkpoint, AnotherRunIsRefusedByName) {
