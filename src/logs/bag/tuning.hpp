@@ -10,7 +10,8 @@ namespace kelpie::bag {
 inline constexpr struct Tuning {
   // Limits on memory and recursion, so that damaged and hostile files end in an error.
   std::size_t most_fields = 20'000;            ///< of a message type; by hand
-  std::size_t most_definitions = 64'000'000;   ///< bytes and fields of all topics'; by hand
+  std::size_t most_definitions = 64'000'000;   ///< bytes of all topics'; by hand
+  std::size_t field_bytes = 100;               ///< that a field counts of these; by hand
   std::size_t most_leaves = 200'000;           ///< of all topics, looked at by inspect; by hand
   std::size_t deepest_type = 32;               ///< types within types; by hand
   std::size_t deepest_struct = 16;             ///< MATLAB: structs within structs; by hand

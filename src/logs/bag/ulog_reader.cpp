@@ -70,9 +70,13 @@ std::optional<UlogRecord> ulog_record_at(std::span<const std::byte> file, std::s
       .type = static_cast<char>(left[2]), .offset = at, .content = left.subspan(kUlogHead, size)};
 }
 
-// Whether a topic can be called so: not empty, printable ASCII without blanks and colons.
-bool is_ulog_name(std::string_view text) {
-  return !text.empty() && is_ascii(text) && text.find_first_of(" :") == std::string_view::npos;
+// The name that a text begins with: printable ASCII without blanks and colons; empty: none.
+std::string_view ulog_name(std::string_view text) {
+  const std::string_view beginning = text.substr(0, kTuning.longest_name + 1);
+  const auto end =
+      std::ranges::find_if_not(beginning, [](char c) { return c > ' ' && c <= '~' && c != ':'; });
+  const auto size = static_cast<std::size_t>(end - beginning.begin());
+  return size <= kTuning.longest_name ? beginning.substr(0, size) : "";
 }
 
 // What a ULog file says of the messages of one number.
@@ -93,12 +97,12 @@ class UlogDefinitions {
  public:
   // "vehicle_attitude:uint64_t timestamp;float[4] q;". Returns "" or what is wrong with it.
   std::string add_format(std::string_view text) {
-    const std::size_t colon = std::min(text.find(':'), text.size());
-    const std::string name(text.substr(0, colon));
-    if (colon == text.size() || !is_ulog_name(name) || !is_ascii(text)) {
+    const std::string name(ulog_name(text));
+    const std::string_view rest = text.substr(name.size());
+    if (name.empty() || !rest.starts_with(':') || !is_ascii(rest)) {
       return "is no format, as in vehicle_attitude:uint64_t timestamp;float[4] q;";
     }
-    const std::string_view fields = text.substr(colon + 1);
+    const std::string_view fields = rest.substr(1);
     const auto [found, is_new] = formats_.try_emplace(name, fields);
     return found->second == fields ? "" : "there are two formats " + name;
   }
@@ -270,13 +274,16 @@ class UlogReader final : public FileReader {
     ByteReader reader(record.content, region_, record.offset + kUlogHead);
     const auto instance = reader.number<std::uint8_t>();
     const auto id = reader.number<std::uint16_t>();
-    const std::string name(text_of(reader.rest()));
-    if (!is_ulog_name(name)) {
-      region_.refuse(record.offset, "the topic name is not printable ASCII");
+    const std::string_view text = text_of(reader.rest());
+    const std::string name(ulog_name(text));
+    if (name.empty() || name.size() < text.size()) {
+      region_.refuse(record.offset,
+                     fmt::format("the topic name is not printable ASCII of at most {} letters",
+                                 kTuning.longest_name));
     }
     const Topic topic = definitions_.topic(name, instance);
     const std::size_t fields = definitions_.subscribe(id, topic, add_topic(topic, region_.file));
-    count_definition(topic.definition.size() + fields, region_.file);
+    count_definition(topic.definition.size() + kTuning.field_bytes * fields, region_.file);
   }
 
   const UlogSubscription* subscription_of(const UlogRecord& record) const {
@@ -326,8 +333,18 @@ class UlogReader final : public FileReader {
   }
 
   bool is_sound(const UlogRecord& record) const {
+    const std::string_view text = text_of(record.content);
+    if (record.type == 'F') {
+      const std::string_view name = ulog_name(text);
+      return !name.empty() && text.substr(name.size()).starts_with(':');
+    }
+    if (record.type == 'A') {
+      constexpr std::size_t kBeforeName = 3;
+      return text.size() > kBeforeName &&
+             ulog_name(text.substr(kBeforeName)).size() + kBeforeName == text.size();
+    }
     if (record.type != 'D') {
-      return record.type == 'A' || record.type == 'F' || record.type == 'L';
+      return record.type == 'L';
     }
     const UlogSubscription* const subscription = subscription_of(record);
     return subscription != nullptr && subscription->bytes &&

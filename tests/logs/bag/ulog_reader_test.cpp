@@ -106,7 +106,7 @@ TEST(UlogReader, TooManySubscriptionsToALongFormatAreRefused) {
   }
   PackedBytes log = file_head();
   log.add(flags(0)).add(format(fields));
-  for (int k = 0; k < 1'500; ++k) {
+  for (int k = 0; k < 200; ++k) {
     log.add(subscribe(0, 0, "long"));
   }
   const std::string message = reader.refusal(log.bytes());
@@ -211,6 +211,25 @@ TEST(UlogReader, DamageIsNamedWithItsOffsetAndRecoverReadsTheRest) {
   const std::size_t step = data(0, accel(0, 0.0F)).size();
   const std::size_t offset = definitions().size() + 2 * step;
   reader.expect_damage_costs_one(small_log(8), offset, {0, 1, 2, 3, 4}, 15);
+}
+
+// One loss, not one for each byte that looks like a definition of 64 kB.
+TEST(UlogReader, GarbageThatLooksLikeDefinitionsIsReadOnce) {
+  using namespace std::string_view_literals;
+  for (const std::string_view garbage : {"\xff\xff"
+                                         "F"sv,
+                                         "\xff\xff"
+                                         "A"sv,
+                                         "F"sv, "A"sv, "\0A"sv}) {
+    PackedBytes log = small_log(8);
+    for (int k = 0; k < 100'000; ++k) {
+      log.add(garbage);
+    }
+    log.add(sync()).add(data(0, accel(3'000'000, 1.0F)));
+    const bag::BagReport report = reader.report_of(log.bytes());
+    EXPECT_EQ(report.messages, 17U) << garbage;
+    EXPECT_EQ(report.loss_count, 1U) << garbage;
+  }
 }
 
 TEST(UlogReader, AFileCutOffAnywhereIsNamedAndReadUpToThere) {
