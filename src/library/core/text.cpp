@@ -37,8 +37,10 @@ std::size_t letter_bytes(std::string_view text) {
     return first <= letter && letter <= last;
   };
   const bool is_none = letter < kLeast.at(bytes) || is_among(0xD800, 0xDFFF) || letter > 0x10FFFF;
-  const bool is_control = letter < ' ' || is_among(0x7F, 0x9F) || is_among(0x2028, 0x202E) ||
-                          is_among(0x2066, 0x2069);  // of lines, terminals, directions of writing
+  // Of lines, terminals, directions of writing.
+  const bool is_control = letter < ' ' || is_among(0x7F, 0x9F) || letter == 0x61C ||
+                          is_among(0x200E, 0x200F) || is_among(0x2028, 0x202E) ||
+                          is_among(0x2066, 0x2069);
   return is_none || is_control ? 0 : bytes;
 }
 

@@ -8,14 +8,16 @@
 #include <utility>
 
 #include "core/quantile.hpp"
+#include "core/text.hpp"
 #include "file/json.hpp"
 #include "format/parameters.hpp"
 
 namespace kelpie::format {
 namespace {
 
+// Some letters end a line of YAML within quotes, too.
 std::string quoted(const std::string& text) {
-  return file::one_line(text);
+  return file::one_line(printable(text, text.size()));
 }
 
 // YAML knows no NaN that all readers agree on.

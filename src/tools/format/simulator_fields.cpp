@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/angle.hpp"
+#include "core/text.hpp"
 
 namespace kelpie::format {
 namespace {
@@ -38,7 +39,7 @@ Eigen::Vector3d mirrored(const Eigen::Vector3d& vector) {
 // Text in an element or a quoted attribute.
 std::string xml_text(const std::string& text) {
   std::string safe;
-  for (const char letter : without_controls(text)) {
+  for (const char letter : printable(text, text.size())) {
     switch (letter) {
       case '&':
         safe += "&amp;";
@@ -59,10 +60,20 @@ std::string xml_text(const std::string& text) {
   return safe;
 }
 
+// The same for xacro, which runs ${…} and $(…), and takes one of several dollars away.
+std::string xacro_text(const std::string& text) {
+  std::string safe;
+  for (const char letter : xml_text(text)) {
+    safe += (letter == '{' || letter == '(') && safe.ends_with('$') ? "$" : "";
+    safe += letter;
+  }
+  return safe;
+}
+
 // Text in a comment, which holds no two dashes in a row.
 std::string comment_text(const std::string& text) {
   std::string safe;
-  for (const char letter : without_controls(text)) {
+  for (const char letter : printable(text, text.size())) {
     safe += letter == '-' && !safe.empty() && safe.back() == '-' ? " -" : std::string(1, letter);
   }
   return safe;
@@ -134,13 +145,6 @@ std::string turn_of(const Eigen::Vector3d& direction) {
 
 }  // namespace
 
-std::string without_controls(std::string text) {
-  for (char& letter : text) {
-    letter = static_cast<unsigned char>(letter) < ' ' ? '?' : letter;
-  }
-  return text;
-}
-
 double lag_of(const IdentifiedVehicle& vehicle, const IdentifiedThruster& thruster) {
   return thruster.lag_s > 0.0 ? thruster.lag_s : vehicle.body.rotor_lag_s;
 }
@@ -150,6 +154,7 @@ Fields thruster_fields(const IdentifiedVehicle& vehicle, const IdentifiedThruste
   const double greatest = thruster.greatest;
   const bool told = thruster.reverse_told;
   add(fields, "name", xml_text(thruster.name));
+  add(fields, "name_xacro", xacro_text(thruster.name));
   add(fields, "name_comment", comment_text(thruster.name));
   add(fields, "place", numbers_text(thruster.position_m));
   add(fields, "place_flu", numbers_text(mirrored(thruster.position_m)));

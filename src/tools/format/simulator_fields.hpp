@@ -45,7 +45,4 @@ std::string rows_text(const Matrix& matrix, const char* before, const char* sepa
   return text;
 }
 
-/// Text without control characters.
-std::string without_controls(std::string text);
-
 }  // namespace kelpie::format

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/text.hpp"
 #include "format/parameters.hpp"
 #include "format/simulator_fields.hpp"
 #include "simulator/parameters.hpp"
@@ -166,7 +167,7 @@ constexpr const char* kUuv =
 )";
 
 constexpr const char* kUuvThruster = R"(    <!-- {name_comment}: {per}, {both} -->
-    <thruster name="{name}">
+    <thruster name="{name_xacro}">
       <origin xyz="{place_flu}" rpy="{turn_flu}"/>
       <dynamics>{rotor_uuv}</dynamics>
       <conversion>
@@ -202,10 +203,10 @@ std::string vehicle_toml(const IdentifiedVehicle& vehicle, const std::string& so
   return fmt::format(
              "# Identified by `kelpie identify` from {}.\n# {} identified; {}.\n"
              "# Thrusters {}.{}\n\n",
-             without_controls(source),
+             printable(source, source.size()),
              planar ? "Surge, sway, yaw and the lateral thrusters are"
                     : "Six axes and thrusters are",
-             without_controls(vehicle.rest), vehicle.speed_unit,
+             printable(vehicle.rest, vehicle.rest.size()), vehicle.speed_unit,
              planar
                  ? fmt::format(" Constant forces ({:.3g} N, {:.3g} N, {:.3g} N m) aren't part of a "
                                "vehicle file.",

@@ -61,7 +61,8 @@ TEST(Text, ShowsOfOthersOneShortPrintableLine) {
       {"a\nb\r\tc\x1b[2J\x7f", "a?b??c?[2J?"},
       {std::string("a\0b", 3), "a?b"},
       {"\xc2\x9b|\xe2\x80\xa8|\xe2\x80\xae",
-       "??|???|???"},  // 1-letter CSI, end of line, right to left
+       "??|???|???"},                              // 1-letter CSI, end of line, right to left
+      {"a\u061Cb\u200Ec\u200Fd", "a??b???c???d"},  // marks of the direction
       {"\xff|\x80|\xc3|\xe2\x82", "?|?|?|??"},
       {"\xc0\xaf|\xed\xa0\x80|\xf4\x90\x80\x80", "??|???|????"},  // too long, half, too far
       {std::string(80, 'x'), std::string(80, 'x')},
