@@ -148,19 +148,31 @@ class Recorder {
 
   // The oldest row, once all measurements of its acceleration are there, or `is_end`.
   std::optional<typename Kind::Row> next(bool is_end) {
-    const std::size_t at = (given_ + 1) * static_cast<std::size_t>(row_ticks_ / sensor_ticks_);
-    if (rows_.empty() || (!is_end && at + half_ >= measurements_.size())) {
+    if (rows_.empty() || (!is_end && at_ + half_ >= measurements_.size())) {
       return std::nullopt;
     }
     typename Kind::Row row = std::move(rows_.front());
     rows_.pop_front();
-    ++given_;
     row.acceleration =
-        smoothed_slope<Kind::Velocity::RowsAtCompileTime>(measurements_, at, half_, period_s());
+        smoothed_slope<Kind::Velocity::RowsAtCompileTime>(measurements_, at_, half_, period_s());
+    at_ += per_row();
+    forget();
     return row;
   }
 
  private:
+  std::size_t per_row() const { return static_cast<std::size_t>(row_ticks_ / sensor_ticks_); }
+
+  // The measurements before all windows to come, many at once: those behind have to move.
+  void forget() {
+    constexpr std::size_t kMost = 10'000;
+    if (at_ > half_ + kMost) {
+      measurements_.erase(measurements_.begin(),
+                          measurements_.begin() + static_cast<std::ptrdiff_t>(at_ - half_));
+      at_ = half_;
+    }
+  }
+
   double period_s() const { return static_cast<double>(sensor_ticks_) * kTickS; }
   void measure() { measurements_.push_back(sensors_.measure(Kind::velocity(simulator_))); }
 
@@ -172,7 +184,7 @@ class Recorder {
   std::int64_t ticks_ = 0;
   std::vector<typename Kind::Velocity> measurements_;
   std::deque<typename Kind::Row> rows_;
-  std::size_t given_ = 0;
+  std::size_t at_ = per_row();  // the measurement of the oldest row
 };
 
 struct InPlane {
