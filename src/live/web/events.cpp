@@ -30,7 +30,7 @@ constexpr std::array kKinds{"count", "gauge", "share", "flag", "text"};  // of H
 constexpr std::array kLevels{"ok", "warn", "error"};                     // of AlertLevel
 
 Json text(const std::string& words) {
-  return chart::printable(words);
+  return chart::safe_text(words);
 }
 
 std::string event(const char* name, const Json& data) {

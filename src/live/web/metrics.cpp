@@ -20,7 +20,7 @@ using Labels = std::vector<std::pair<std::string_view, std::string_view>>;
 
 std::string escaped(std::string_view value) {
   std::string text;
-  for (const char c : chart::printable(value)) {
+  for (const char c : chart::safe_text(value)) {
     if (c == '\\' || c == '"') {
       text += '\\';
     }

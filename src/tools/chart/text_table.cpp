@@ -93,7 +93,7 @@ std::string table_text(const TextTable& table) {
   }
   std::vector<std::size_t> widths = widths_of(lines);
   const std::string gap(table.whole ? 2 : fit(widths, table.left), ' ');
-  std::string text = table.title.empty() ? "" : wrapped(printable(table.title)) + "\n";
+  std::string text = table.title.empty() ? "" : wrapped(safe_text(table.title)) + "\n";
   for (const Line& line : lines) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       const std::string cell = shortened(line[i], widths[i]);
@@ -105,7 +105,7 @@ std::string table_text(const TextTable& table) {
     text += "\n";
   }
   for (const std::string& note : table.notes) {
-    text += wrapped(printable(note)) + "\n";
+    text += wrapped(safe_text(note)) + "\n";
   }
   return text + "\n";
 }

@@ -48,7 +48,7 @@ std::string with_minus(const std::string& number) {
 
 }  // namespace
 
-std::string printable(std::string_view text) {
+std::string safe_text(std::string_view text) {
   const std::string whole = repaired(text);
   const auto byte = [&](std::size_t i) {
     return i < whole.size() ? static_cast<unsigned char>(whole[i]) : 0U;
@@ -76,7 +76,7 @@ std::size_t code_points(std::string_view text) {
 }
 
 std::string shortened(std::string_view text, std::size_t most) {
-  std::string whole = printable(text);
+  std::string whole = safe_text(text);
   if (code_points(whole) <= most) {
     return whole;
   }
@@ -106,7 +106,7 @@ std::string file_names(std::string_view paths) {
 
 std::string escape_markup(std::string_view text) {
   std::string escaped;
-  for (const char letter : printable(text)) {
+  for (const char letter : safe_text(text)) {
     switch (letter) {
       case '&':
         escaped += "&amp;";

@@ -12,7 +12,7 @@ namespace kelpie::chart {
 
 /// Text that is safe to show: broken UTF-8, control characters (a terminal would obey) and
 /// characters that change the text direction become U+FFFD.
-std::string printable(std::string_view text);
+std::string safe_text(std::string_view text);
 
 /// Length of UTF-8 text in code points.
 std::size_t code_points(std::string_view text);

@@ -114,7 +114,7 @@ void print_safely(std::FILE* stream, std::string_view text) {
   std::string safe;
   while (!text.empty()) {
     const std::size_t length = std::min(text.find_first_of("\n\t"), text.size());
-    safe += chart::printable(text.substr(0, length));
+    safe += chart::safe_text(text.substr(0, length));
     safe += text.substr(length, 1);
     text.remove_prefix(std::min(length + 1, text.size()));
   }

@@ -197,9 +197,9 @@ std::string comparison_table(const study::Comparison& comparison) {
   for (const ComparedR2& r2 : {kHeldOutR2, kMeanR2, kOneStepR2}) {
     text += chart::table_text(comparison_view(comparison, r2));
   }
-  text += chart::wrapped(chart::printable(contenders_note(comparison))) + "\n\nRecommendation\n";
+  text += chart::wrapped(chart::safe_text(contenders_note(comparison))) + "\n\nRecommendation\n";
   for (const std::string& paragraph : recommendation(comparison)) {
-    text += chart::wrapped(chart::printable(paragraph)) + "\n";
+    text += chart::wrapped(chart::safe_text(paragraph)) + "\n";
   }
   return text + "\n";
 }

@@ -214,10 +214,10 @@ std::string health_headline(const std::vector<HealthCard>& cards) {
 std::string health_verdict(const std::vector<HealthCard>& cards) {
   std::string text;
   for (const HealthCard& card : cards) {
-    text += chart::wrapped(chart::printable(span_text(card))) + "\n";
+    text += chart::wrapped(chart::safe_text(span_text(card))) + "\n";
     const std::vector<const Change*> found = found_changes(card);
     for (const Change* change : found) {
-      text += chart::wrapped("  " + chart::printable(health::change_text(card, *change) +
+      text += chart::wrapped("  " + chart::safe_text(health::change_text(card, *change) +
                                                      baseline_words(card, *change))) +
               "\n";
     }
@@ -227,15 +227,15 @@ std::string health_verdict(const std::vector<HealthCard>& cards) {
     }
     if (const std::vector<std::string> untold = untold_baselines(card);
         !untold.empty() && !has_too_few_episodes(card)) {
-      text += chart::wrapped("  " + chart::printable("since " + chart::list_text(untold) +
+      text += chart::wrapped("  " + chart::safe_text("since " + chart::list_text(untold) +
                                                      ": too few episodes to tell a change")) +
               "\n";
     }
     if (const std::string quiet = quiet_text(card); !quiet.empty() && cards.size() == 1) {
-      text += chart::wrapped(chart::printable(quiet)) + "\n";
+      text += chart::wrapped(chart::safe_text(quiet)) + "\n";
     }
     for (const std::string& remark : card.table.remarks) {
-      text += chart::wrapped(chart::printable(remark)) + "\n";
+      text += chart::wrapped(chart::safe_text(remark)) + "\n";
     }
   }
   return text;
@@ -244,7 +244,7 @@ std::string health_verdict(const std::vector<HealthCard>& cards) {
 std::string health_tables(const std::vector<HealthCard>& cards) {
   std::string text;
   for (const HealthCard& card : cards) {
-    text += chart::printable(span_text(card)) + "\n\n" +
+    text += chart::safe_text(span_text(card)) + "\n\n" +
             chart::tables_text({changes_view(card), episodes_view(card)});
   }
   return text;

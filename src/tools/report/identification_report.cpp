@@ -273,11 +273,11 @@ std::vector<std::string> identification_remarks(const study::Identification& fou
 std::string identification_table(const study::Identification& found) {
   std::string text =
       fmt::format("{}\n{} training rows, {} windows of {:g} s; {}; misfit {:.2f}\n\n",
-                  chart::printable(found.source), chart::grouped(found.training_rows),
+                  chart::safe_text(found.source), chart::grouped(found.training_rows),
                   chart::grouped(found.fit().windows), found.fit().window_s,
-                  chart::printable(found.split), found.fit().misfit);
+                  chart::safe_text(found.split), found.fit().misfit);
   if (!found.alignment.empty()) {
-    text += chart::wrapped(chart::printable(found.alignment)) + "\n\n";
+    text += chart::wrapped(chart::safe_text(found.alignment)) + "\n\n";
   }
   text += chart::table_text(parameters_view(found));
   if (!found.lags.empty()) {
@@ -290,7 +290,7 @@ std::string identification_table(const study::Identification& found) {
     text += chart::table_text(certificate_view(found.certificates));
   }
   for (const std::string& remark : identification_remarks(found)) {
-    text += chart::wrapped(chart::printable(remark)) + "\n";
+    text += chart::wrapped(chart::safe_text(remark)) + "\n";
   }
   return text + "\n";
 }

@@ -184,7 +184,7 @@ std::string draft_table(const log::Draft& draft, const std::optional<study::Firs
 std::string mistakes_text(const std::vector<log::Mistake>& mistakes) {
   std::string text;
   for (const log::Mistake& mistake : mistakes) {
-    text += chart::wrapped(chart::printable((mistake.is_refused ? "MISTAKE: " : "WARNING: ") +
+    text += chart::wrapped(chart::safe_text((mistake.is_refused ? "MISTAKE: " : "WARNING: ") +
                                             log::mistake_text(mistake))) +
             "\n";
   }

@@ -99,7 +99,7 @@ std::string rollout_method(const study::OpenLoopResult& result) {
   return fmt::format(
       "{} in open loop on {}: {} rows ({}) in {} unbroken {}, a start every second. "
       "Between two rows the commands {}.",
-      chart::printable(result.model), chart::printable(result.source), chart::grouped(result.rows),
+      chart::safe_text(result.model), chart::safe_text(result.source), chart::grouped(result.rows),
       result.split, chart::grouped(result.stretches),
       result.stretches == 1 ? "stretch" : "stretches",
       result.held ? "are held" : "go along a line");

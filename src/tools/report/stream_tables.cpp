@@ -142,7 +142,7 @@ chart::TextTable coverage_table(const study::StreamResult& result) {
       table.rows.push_back({row, chart::grouped(coverage.samples), percent(coverage.share),
                             percent(coverage.lowest), chart::significant(coverage.mean_width),
                             chart::significant(coverage.median_width),
-                            or_dash(chart::printable(chart::unit_text(axis.unit)))});
+                            or_dash(chart::safe_text(chart::unit_text(axis.unit)))});
     }
   }
   return table;

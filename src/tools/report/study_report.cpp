@@ -202,7 +202,7 @@ chart::Facts facts(const StudyView& study) {
 std::string study_table(const StudyView& study) {
   std::string text;
   for (const std::string& sentence : study_sentences(study)) {
-    text += chart::wrapped(chart::printable(sentence)) + "\n";
+    text += chart::wrapped(chart::safe_text(sentence)) + "\n";
   }
   text += "\n" + chart::table_text(learners_view(study));
   for (const StudyMeasure& measure : {kStudyFinal, kStudyOneStep}) {

@@ -214,8 +214,8 @@ std::string worse_text(const study::TuneResult& result) {
   return fmt::format(
       "WORSE than the settings the search started from on {} of {} logs; most on {}, {}: {} "
       "instead of {}",
-      logs.size(), result.logs.size(), chart::printable(result.logs[most.log].name),
-      chart::printable(result.axes[most.axis].name), chart::decimal(scores.tuned),
+      logs.size(), result.logs.size(), chart::safe_text(result.logs[most.log].name),
+      chart::safe_text(result.axes[most.axis].name), chart::decimal(scores.tuned),
       chart::decimal(scores.base));
 }
 
@@ -225,10 +225,10 @@ std::string tuned_toml(const study::TuneResult& result, const study::TuneJournal
     text += "# The search was interrupted: these are the best values it had found by then.\n";
   }
   for (const auto& [name, value] : header) {
-    text += fmt::format("# {}: {}\n", name, chart::printable(value));
+    text += fmt::format("# {}: {}\n", name, chart::safe_text(value));
   }
   for (const study::TunedAxis& axis : result.axes) {
-    text += fmt::format("# {}: score {} on rung {} of {}", chart::printable(axis.name),
+    text += fmt::format("# {}: score {} on rung {} of {}", chart::safe_text(axis.name),
                         chart::decimal(axis.score), axis.rung + 1, result.rungs.size());
     for (std::size_t i = 0; i < result.references.size(); ++i) {
       text += fmt::format("; {} {} on the last", result.references[i].first,

@@ -28,7 +28,7 @@ namespace {
 constexpr double kMinute = 60.0;
 
 std::string line(const std::string& text) {
-  return chart::wrapped(chart::printable(text)) + "\n";
+  return chart::wrapped(chart::safe_text(text)) + "\n";
 }
 
 // 0 for R² below 0 or not measured: the mean of the held-out rows has 0.

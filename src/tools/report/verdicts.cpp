@@ -24,7 +24,7 @@ using study::ContenderKind;
 using study::Contest;
 
 std::string paragraph(const std::string& text) {
-  return text.empty() ? "" : chart::wrapped(chart::printable(text)) + "\n";
+  return text.empty() ? "" : chart::wrapped(chart::safe_text(text)) + "\n";
 }
 
 std::string short_name(const std::string& file) {

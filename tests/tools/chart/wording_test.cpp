@@ -11,15 +11,15 @@ namespace {
 
 TEST(Printable, LeavesNothingThatTurnsTheDirectionOfWhatIsBeside) {
   // NOLINTNEXTLINE(misc-misleading-bidirectional)
-  EXPECT_EQ(chart::printable("a\u202eb\u2066c\u200f\u061cd"), "a\uFFFDb\uFFFDc\uFFFD\uFFFDd");
-  EXPECT_EQ(chart::printable("שלום – … ’"), "שלום – … ’");
+  EXPECT_EQ(chart::safe_text("a\u202eb\u2066c\u200f\u061cd"), "a\uFFFDb\uFFFDc\uFFFD\uFFFDd");
+  EXPECT_EQ(chart::safe_text("שלום – … ’"), "שלום – … ’");
 }
 
 TEST(Wording, ControlCharactersAndBrokenUtf8CannotReachATerminal) {
-  EXPECT_EQ(chart::printable("a\x1b[2Jb"), "a\uFFFD[2Jb");
-  EXPECT_EQ(chart::printable("x\xffy"), "x\uFFFDy");
-  EXPECT_EQ(chart::printable("a\u009B2Jb\u00A0"), "a\uFFFD2Jb\u00A0");
-  EXPECT_EQ(chart::printable("Ω̇ ünï"), "Ω̇ ünï");
+  EXPECT_EQ(chart::safe_text("a\x1b[2Jb"), "a\uFFFD[2Jb");
+  EXPECT_EQ(chart::safe_text("x\xffy"), "x\uFFFDy");
+  EXPECT_EQ(chart::safe_text("a\u009B2Jb\u00A0"), "a\uFFFD2Jb\u00A0");
+  EXPECT_EQ(chart::safe_text("Ω̇ ünï"), "Ω̇ ünï");
 }
 
 RC_GTEST_PROP(Wording, EscapedTextHoldsNoMarkup, (const std::string& text)) {
