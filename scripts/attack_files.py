@@ -1,28 +1,31 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Conditions of the operating system, and hostile names, around the command kelpie.
+"""Conditions of the operating system around the commands of kelpie and around `kelpie live`.
 
     python3 scripts/attack_files.py KELPIE [CASE...]
 
 KELPIE is the program. A CASE is a function attack_CASE below (all by default): no space on the disk,
-no permission, no descriptors, files cut or left over, two processes in one folder, checkpoints of
-another run, hostile names of columns and files, other environments, wide and sparse files. Every
-command ends within two minutes of processor time, by an exit code (0, 1 or 2) and no signal, with a message of at most
-2,000 letters where the code is not 0; what stood in the folder before is whole, and no draft of a
-file is left. Exit code 1 where a rule is broken. Commands run as nobody where root starts the script.
+no permission, no descriptors, files cut or left over, kills, two processes in one folder, checkpoints
+of another run, hostile names of files, other environments, wide and sparse files. Every command ends
+within two minutes of processor time, by an exit code (0, 1 or 2) and no signal, with a message of at
+most 2,000 letters where the code is not 0; what stood in the folder before is whole, no draft of a
+file is left, and a later `kelpie live` goes on, or begins anew where its message says --fresh. Exit
+code 1 where a rule is broken. Commands run as nobody where root starts the script.
 """
 
 import argparse
 import json
 import os
+import random
 import resource
 import shutil
+import signal
+import socket
 import struct
 import subprocess
 import sys
 import tempfile
-import xml.etree.ElementTree as ElementTree
-import zipfile
+import time
 import zlib
 from pathlib import Path
 
@@ -30,9 +33,7 @@ SECONDS = 120  # of processor time: the machine may have other work
 WAIT_SECONDS = 1200
 MOST_SAID = 2100  # bytes: 2,000 and a line's beginning
 LEARN = ["--set", "preset=small", "--set", "warmup=20", "--set", "buffer=30", "--align", "none"]
-NAMES = ['quote"', "apo'strophe", "back\\slash", "*/ int x; /*", "]] end", "line\nfeed", "??/", "%s%n",
-         "-dash", "$(id)", "<b>&amp;", "int", "end", "ü€\U0001F6A2", "a: {b}", "#", "nul", "\u202eturn",
-         "k" * 300]
+LIVE = ["live", "--replay", "log.csv", "--config", "live.toml", *LEARN[:-2], "--out", "live"]
 
 
 class Broken(Exception):
@@ -64,7 +65,9 @@ class Room:
         self.user = 65534 if os.getuid() == 0 else None
         folder.chmod(0o777)
         (folder / "log.csv").write_text(log(300))
+        (folder / "live.toml").write_text('[live]\nalign = "none"\ncheckpoint = 0.3\n')
         self.run(["learn", "log.csv", *LEARN, "--out", "out", "--checkpoint-every", "100"], {0})
+        self.live()
 
     def run(self, words, codes=(0, 1, 2), *, said=(), limit=None, env=None, umask=0o022):
         def prepare():
@@ -77,10 +80,26 @@ class Room:
             capture_output=True, preexec_fn=prepare, env=env, user=self.user, check=False)
         shown = f"{' '.join(map(str, words))[:200]!r}: {done.returncode}: {done.stderr[:400]!r}"
         require(done.returncode in codes, shown)
-        require(len(done.stderr) <= MOST_SAID, "long: " + shown)
+        require(done.returncode == 0 or len(done.stderr) <= MOST_SAID, "long: " + shown)
         require(done.returncode == 0 or done.stderr, "silent: " + shown)
         require(all(text.encode() in done.stderr for text in said), "unclear: " + shown)
         return done
+
+    def live(self, *more, said=("--fresh",), codes=(0, 1, 2), **how):
+        """`kelpie live` as quick as it can; where it fails, with one of these words."""
+        done = self.run([*LIVE, "--speed", "max", *more], codes, **how)
+        require(done.returncode == 0 or any(word.encode() in done.stderr for word in said),
+                f"live {more}: unclear: {done.stderr[-400:]!r}")
+        return done
+
+    def live_goes_on(self):
+        """A later run goes on, or begins anew where it says so."""
+        if self.live().returncode != 0:
+            self.live("--fresh", codes={0})
+
+    def start(self, words):
+        return subprocess.Popen([self.kelpie, *words], cwd=self.folder, user=self.user,
+                                stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
 
     def contents(self):
         return {str(f.relative_to(self.folder)): f.read_bytes()
@@ -114,6 +133,11 @@ def attack_full_disk(room):
             else:
                 shutil.rmtree(room.folder)
                 raise Broken(f"{words}: writes within {size} bytes")
+    for size in (0, 100, 4096, 50_000):
+        for more in ([], ["--record", "rec"]):
+            room.live("--fresh", *more, said=["File too large", "cannot be written"],
+                      limit=(resource.RLIMIT_FSIZE, size))
+            room.live_goes_on()
 
 
 def attack_no_permission(room):
@@ -126,12 +150,12 @@ def attack_no_permission(room):
         for path in (room.folder, *(p for p in room.folder.rglob("*") if p.is_dir())):
             path.chmod(0o555)
     try:
-        for words in WRITING.values():
+        for words in (*WRITING.values(), [*LIVE, "--speed", "max"]):
             room.run(words, {1, 2}, said=["Permission denied"])
             room.expect_unchanged(before)
     finally:
-        room.folder.chmod(0o777)
-        (room.folder / "out").chmod(0o777)
+        for path in (room.folder, room.folder / "out", room.folder / "live"):
+            path.chmod(0o777)
 
 
 def attack_no_descriptors(room):
@@ -142,6 +166,14 @@ def attack_no_descriptors(room):
             if done.returncode != 0:
                 room.expect_unchanged(before)
             before = room.contents()
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        page = f"127.0.0.1:{one.getsockname()[1]}"
+    for number in (4, 5, 6, 7, 8, 12, 20):
+        room.live("--fresh", "--record", "rec", "--page", page,
+                  said=["Too many open files", "cannot be read", "cannot start", "isn't there"],
+                  limit=(resource.RLIMIT_NOFILE, number))
+        room.live_goes_on()
 
 
 def attack_leftovers(room):
@@ -160,17 +192,64 @@ def attack_leftovers(room):
     (room.folder / "out/result.json.1-2.tmp").chmod(0o666)
     room.run(WRITING["out/result.json"], {0})
     require(not list((room.folder / "out").glob("*.tmp")), "a draft is left")
+    leave_live_files(room, random.Random(1))
+
+
+def leave_live_files(room, dice):
+    """Power is lost: the newest checkpoint is cut or wild, drafts are left."""
+    newest, previous = (room.folder / "live" / name
+                        for name in ("checkpoint.kelpie", "checkpoint.previous.kelpie"))
+    room.live("--fresh", codes={0})
+    whole, earlier = newest.read_bytes(), previous.read_bytes()
+    wild = [bytearray(whole) for _ in range(10)]
+    for one in wild:
+        for _ in range(5):
+            one[dice.randrange(len(one))] = dice.randrange(256)
+    for left in [*(whole[:cut] for cut in (0, 1, 7, 64, len(whole) // 2, len(whole) - 1)), *wild]:
+        newest.write_bytes(left)
+        previous.write_bytes(earlier if dice.random() < 0.5 else left[:100])
+        for name in ("checkpoint.kelpie.1-0.tmp", "model.json.1-0.tmp"):
+            draft = room.folder / "live" / name
+            draft.write_bytes(whole[:1000])
+            draft.chmod(0o666)
+        room.live(codes={0, 2})
+    room.live("--fresh", codes={0})
+    require(not list(newest.parent.glob("*.tmp")), "live: a draft is left")
+    newest.unlink()
+    newest.mkdir()
+    room.live(codes={1, 2}, said=["checkpoint"])
+    newest.rmdir()
+    room.live_goes_on()
+
+
+def attack_kills(room):
+    """Of `kelpie live`; tests/tools/cli/checkpoint_test.cpp kills `kelpie learn`."""
+    dice = random.Random(1)
+    for _ in range(8):
+        process = room.start([*LIVE, "--record", "rec", "--speed", "30"])
+        time.sleep(dice.uniform(0.05, 1.5))
+        process.kill()
+        process.communicate()
+        room.live("--check", codes={0})
+    room.live_goes_on()
 
 
 def attack_two_at_once(room):
-    words = [room.kelpie, "learn", "log.csv", "--align", "none", "--out", "both"]
     (room.folder / "log.csv").write_text(log(3000))
-    both = [subprocess.Popen(words, cwd=room.folder, user=room.user, stderr=subprocess.PIPE,
-                             stdout=subprocess.DEVNULL) for _ in range(2)]
+    both = [room.start(["learn", "log.csv", "--align", "none", "--out", "both"]) for _ in range(2)]
     said = [one.communicate(timeout=WAIT_SECONDS)[1] for one in both]
     codes = sorted(one.returncode for one in both)
     require(codes in ([0, 1], [0, 2]), f"{codes}: {said}")
     json.loads((room.folder / "both/result.json").read_text())
+    first = room.start([*LIVE, "--fresh", "--speed", "10"])
+    lock = room.folder / "live/.kelpie.lock"
+    while not lock.exists() and first.poll() is None:
+        time.sleep(0.01)
+    room.live(codes={1, 2}, said=["live"])
+    first.send_signal(signal.SIGINT)
+    said = first.communicate(timeout=WAIT_SECONDS)[1]
+    require(first.returncode == 0, f"the first: {first.returncode}: {said[-400:]!r}")
+    room.live_goes_on()
 
 
 def attack_other_checkpoints(room):
@@ -190,55 +269,10 @@ def attack_other_checkpoints(room):
     other = whole[:at] + b"99" + whole[at + 2:-4]
     checkpoint.write_bytes(other + struct.pack("<I", zlib.crc32(other)))
     room.run(again, {2}, said=["checkpoint.kelpie: ", "99"])
-
-
-def attack_names(room):
-    """Columns of hostile names, learned, and exported to every format; and names within a model.json
-    that no log can have."""
-    for name in NAMES:
-        for names in ((name, "n", "udot"), ("u", name, "udot"), ("u", "n", name)):
-            (room.folder / "names.csv").write_text(log(300, names))
-            inputs, target = (json.dumps(what, ensure_ascii=False) for what in (names[:2], names[2]))
-            (room.folder / "names.toml").write_text(
-                f'[log]\ntime = "t"\ninputs = {inputs}\ntargets = [{target}]\n')
-            shutil.rmtree(room.folder / "out2", ignore_errors=True)
-            done = room.run(["learn", "names.csv", *LEARN, "--config", "names.toml", "--out", "out2"],
-                            {2} if "\n" in name else {0})
-            if done.returncode == 0:
-                check_exports(room, name)
-        shutil.copytree(room.folder / "out", room.folder / "out2", dirs_exist_ok=True)
-        model = json.loads((room.folder / "out/model.json").read_text())
-        model["inputs"][1] = name
-        model["axes"][0]["target"] = name + "_dot"
-        (room.folder / "out2/model.json").write_text(json.dumps(model))
-        check_exports(room, name)
-
-
-def check_exports(room, name):
-    for file in (room.folder / "out2").glob("*.json"):
-        json.loads(file.read_text())
-    try:
-        import yaml
-        for file in (room.folder / "out2").glob("*.yaml"):
-            yaml.safe_load(file.read_text())
-    except ImportError:
-        pass
-    for file in (room.folder / "out2").glob("*.xml"):
-        ElementTree.parse(file)
-    for file in (room.folder / "out2").glob("*.lua"):
-        if shutil.which("luac"):
-            compiled = subprocess.run(["luac", "-p", file], capture_output=True, check=False)
-            require(compiled.returncode == 0, f"{name!r}: {compiled.stderr[:300]!r}")
-    for more in ([], ["--assess", "--hessian"], ["--casadi"]):
-        room.run(["export", "out2/model.json", "--c", "m.c", "--header", "m.h", *more], {0})
-        if shutil.which("cc"):
-            compiled = subprocess.run(
-                ["cc", "-std=c99", "-Wall", "-Werror", "-Wno-unused", "-c", "m.c", "-o", "/dev/null"],
-                cwd=room.folder, capture_output=True, check=False)
-            require(compiled.returncode == 0, f"{name!r}: {compiled.stderr[:300]!r}")
-    if room.run(["export", "out2/model.json", "--fmu", "m.fmu"]).returncode == 0:
-        with zipfile.ZipFile(room.folder / "m.fmu") as unit:
-            ElementTree.fromstring(unit.read("modelDescription.xml"))
+    room.live("--set", "buffer=41", codes={2}, said=["buffer"])
+    (room.folder / "log.csv").write_text(log(300, ("v", "m", "vdot")))
+    room.live(codes={2})
+    room.live_goes_on()
 
 
 def attack_file_names(room):
