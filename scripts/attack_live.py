@@ -10,13 +10,13 @@
 KELPIE is the program. A simulated ROV (examples/bluerov_udp.py) drives meanwhile. web sends hostile
 requests to the page, mavlink hostile datagrams to the vehicle's port, before and during the drive,
 rubbish datagrams of 6 kB that begin a frame at every byte, 3 MB/s, and replay the vehicle's own
-signed frames again, whole and damaged. Ended by itself within four minutes. Exit code 1 after one of: a signal, an exit code other than 0,
-ten seconds without an answer or a prediction, more memory than --memory [MB] above the memory before
+signed frames again, whole and damaged; --count 0 is the drive alone. Ended by itself within four
+minutes. Exit code 1 after one of: a signal, an exit code other than 0, ten seconds without an answer or a prediction, more memory than --memory [MB] above the memory before
 the attack, a prediction outside of the accelerations seen, fewer samples learned during the attack
 than half of those that the vehicle sent (than 95 % during rubbish), at the end R² below 0.5 or more
-than 0.1 below that of least squares on the same samples, predictions after the attack that explain
-less than half of the variance of the vehicle's accelerations (0.3 after rubbish and replay). The machine may be busy: samples, not
-seconds, are counted.
+than 0.1 below that of least squares on the same samples, predictions of the last 150 samples that
+explain less than half of the variance of the vehicle's accelerations. The machine may be busy:
+samples, not seconds, are counted.
 """
 
 import argparse
@@ -43,7 +43,7 @@ PATIENCE_S = 10.0  # until silence is a hang
 # Samples learned, however long a machine with other work takes, within WAIT_S.
 WARM_UP = 250  # before the attack: a model is in service, and memory has settled
 LATER = 150  # after the attack
-WHOLE = 600  # in all, so that the first tenth of a minute is forgotten in R²
+WHOLE = 750  # in all: R², and what is judged, are of the same part of the drive in every attack
 WAIT_S = 75.0
 LONGEST_DELAY_S = 3.0  # of a prediction, on the clock of the vehicle
 DATAGRAMS_PER_S = 2500
@@ -408,11 +408,9 @@ def attack_replay(run, vehicle, count, chance):
     send_datagrams(run, repeats(lambda: vehicle.line.sent, chance), count, sockets, chance)
 
 
-# Of each attack: what happens, how often, the share of the rows that is learned meanwhile, and the
-# share of the variance that predictions explain later (less where the drive is short).
-ATTACKS = {"web": (attack_web, 2_000, 0.5, 0.5), "mavlink": (attack_mavlink, 100_000, 0.5, 0.5),
-           "rubbish": (attack_rubbish, 10_000, 0.95, 0.3),
-           "replay": (attack_replay, 20_000, 0.5, 0.3)}
+# Of each attack: what happens, how often, and the share of the rows that is learned meanwhile.
+ATTACKS = {"web": (attack_web, 2_000, 0.5), "mavlink": (attack_mavlink, 100_000, 0.5),
+           "rubbish": (attack_rubbish, 10_000, 0.95), "replay": (attack_replay, 20_000, 0.5)}
 
 
 def flood_beforehand(run, count, chance):
@@ -445,8 +443,8 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     chance = random.Random(options.seed)
-    attack, count, share, explained = ATTACKS[options.attack]
-    count = options.count or count
+    attack, usual, share = ATTACKS[options.attack]
+    count = usual if options.count is None else options.count
     signs = attack is attack_replay
     with tempfile.TemporaryDirectory(prefix="kelpie_attack_") as folder:
         run = Run(options.kelpie, Path(folder), signs)
@@ -461,6 +459,9 @@ def main():
         attack(run, vehicle, count, chance)
         passed_s, ended_s = time.monotonic() - began, vehicle.body.t
         learned = run.learned()
+        # A younger model says less, whether it was attacked or not.
+        run.wait_until_learned(WHOLE - LATER)
+        judged_s = vehicle.body.t
         run.wait_until_learned(max(learned + LATER, WHOLE))
         after, most = run.metrics() or {}, run.megabytes()
         vehicle.ends.set()
@@ -469,7 +470,7 @@ def main():
         run.said.seek(0)
         said = run.said.read()
     meanwhile, later = learned - before, after.get("kelpie_samples_learned", 0) - learned
-    said_r2 = vehicle.r2_of_predictions(ended_s)
+    said_r2 = vehicle.r2_of_predictions(judged_s)
     r2, squares_r2 = ({axis: after.get(f'kelpie_axis_r2{{axis="{axis}",predictor="{by}"}}',
                                        float("nan")) for axis in ("udot", "rdot")}
                       for by in ("model", "least_squares"))
@@ -482,7 +483,7 @@ def main():
     check(later >= LATER, f"{later:.0f} samples learned after the attack")
     check(all(r2[axis] > max(0.5, squares_r2[axis] - 0.1) for axis in r2),
           f"R², where least squares has {text(squares_r2)}")
-    check(all(value > explained for value in said_r2.values()), "predictions beside the truth")
+    check(all(value > 0.5 for value in said_r2.values()), "predictions beside the truth")
     print(f"{count} in {passed_s:.0f} s; memory {memory:.0f} MB before, {most:.0f} MB at most; "
           f"slowest honest answer {run.slowest_s:.2f} s; {meanwhile:.0f} samples learned of "
           f"{ended_s - drove_s:.0f} s of driving, {later:.0f} later; {vehicle.predictions} "
