@@ -17,10 +17,16 @@ from xml.etree import ElementTree
 import pytest
 from conftest import SOURCE_DIR
 
-NAMES = ['quote" evil "', "apo' evil '", "back\\", "*/ int evil; /*", "??/", "]] evil() --[[ ]==] evil()",
-         "--> <evil/> <!--", "</script><evil>", "]]><evil/>", "&evil;", "${evil}", "$(arg evil)", "$${evil}",
-         "line\nevil: 1", "line\revil()", "line\u2028evil()", "ü€\U0001F6A2", "\u202eevil", "\x85evil: 1", "\x7fevil", "-evil", "=evil()",
-         "%s%n%evil", "# evil", "a: {evil}", '""" evil() """', "''' evil() '''", "int", "k" * 300]
+try:
+    import yaml
+except ImportError:
+    yaml = None
+
+NAMES = ['quote" evil "', "apo' evil '", "back\\", "*/ int evil; /*", "??/",
+         "]] evil() --[[ ]==] evil()", "--> <evil/> <!--", "</script><evil>", "]]><evil/>", "&evil;",
+         "${evil}", "$(arg evil)", "$${evil}", "line\nevil: 1", "line\revil()", "line\u2028evil()",
+         "ü€\U0001F6A2", "\u202eevil", "\x85evil: 1", "\x7fevil", "-evil", "=evil()", "%s%n%evil",
+         "# evil", "a: {evil}", '""" evil() """', "''' evil() '''", "int", "k" * 300]
 THRUSTERS = ["th1", "th2", "th3"]
 
 
@@ -37,8 +43,9 @@ def check_c(text, folder):
     if compiler:
         (folder / "checked.c").write_text(text)
         for words in (["-fsyntax-only"], ["-E", "-P"]):
-            done = subprocess.run([compiler, "-std=c99", "-Wall", "-Werror", "-Wno-unused", *words,
-                                   folder / "checked.c"], capture_output=True, text=True, check=True)
+            done = subprocess.run(
+                [compiler, "-std=c99", "-Wall", "-Werror", "-Wno-unused", *words,
+                 folder / "checked.c"], capture_output=True, text=True, check=True)
         no_evil(re.sub(r'"(\\.|[^"\\])*"', "", done.stdout))
 
 
@@ -70,8 +77,8 @@ def check_csv(text, _folder):
 
 
 def check_yaml(text, _folder):
-    yaml = pytest.importorskip("yaml")
-    assert "evil" not in yaml.safe_load(text)
+    if yaml:
+        assert "evil" not in yaml.safe_load(text)
 
 
 class Page(HTMLParser):
@@ -136,11 +143,12 @@ def check_identified(run, log, thrusters):
     run("identify", *of_log, "--vehicle", SOURCE_DIR / "vehicles/dagon.toml", "--out", "out")
     run("plan", *of_log, "--tell", "sway_drag", "--seconds", "10", "--out", "out/plan")
     run("predict", log[0], "--model", "out/model.json", "--out", "out/predictions.csv")
-    check(run.folder / "out", {".sdf", ".xacro", ".xml", ".m", ".py", ".yaml", ".json", ".html", ".csv"})
+    check(run.folder / "out",
+          {".sdf", ".xacro", ".xml", ".m", ".py", ".yaml", ".json", ".html", ".csv"})
     check(run.folder / "out/plan", {".csv", ".json", ".html"})
 
 
-@pytest.mark.parametrize("names", threes([name for name in NAMES if not re.search("[\n\r]", name)]))
+@pytest.mark.parametrize("names", threes([n for n in NAMES if not re.search("[\n\r]", n)]))
 def test_of_columns(run, names):
     check_identified(run, learn(run, names), names)
 
