@@ -15,7 +15,7 @@
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/svr/resources.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "study/summary.hpp"
 
 namespace kelpie::lab {

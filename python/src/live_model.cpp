@@ -16,7 +16,7 @@
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/vehicle/diagnosis.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "study/nominal.hpp"
 
 namespace kelpie::python {

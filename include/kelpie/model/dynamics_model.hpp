@@ -15,7 +15,7 @@ namespace kelpie {
 
 class Budget;  // kelpie/svr/resources.hpp
 class Diagnosis;
-class DynamicsAxis;
+class ModelAxis;
 struct Coefficient;
 struct Finding;
 struct StoredPastModel;
@@ -131,8 +131,8 @@ class DynamicsModel final : public OnlineModel {
   /// three thrusters) are not counted. Requires settings that validate.
   static std::size_t bytes(std::span<const std::string> inputs, const ModelSettings& settings);
 
-  /// The mechanisms of an axis, for kelpie's own tools and tests (model/dynamics_axis.hpp).
-  const DynamicsAxis& mechanisms(std::size_t axis) const;
+  /// The mechanisms of an axis, for kelpie's own tools and tests (model/model_axis.hpp).
+  const ModelAxis& mechanisms(std::size_t axis) const;
 
  private:
   friend void set_nominal(DynamicsModel& model, std::size_t axis,

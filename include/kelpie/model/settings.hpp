@@ -19,6 +19,7 @@ namespace kelpie {
 enum class LearnerKind : std::uint8_t {
   committee,  ///< several learners, weighted by their errors (Committee)
   svr,        ///< the paper's learner alone
+  posterior,  ///< one Gaussian posterior of terms and kernels
 };
 
 /// Settings common to all axes of a model.

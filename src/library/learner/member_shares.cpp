@@ -11,13 +11,13 @@ MemberShares::MemberShares(std::span<const double> first) : members_(first.size(
   resume_from(first);
 }
 
-void MemberShares::score(std::span<const double> errors) {
+void MemberShares::score(std::span<const double> errors, std::size_t block) {
   for (std::size_t k = 0; k < members_; ++k) {
     // What isn't a number is no better than the worst.
     const double error = errors[k] < kOnline.shares.clip ? errors[k] : kOnline.shares.clip;
     block_[k] += error * std::sqrt(error);
   }
-  if (++scored_ == kBlock) {
+  if (++scored_ >= block) {
     learn_block();
     update_weights();
     start_block();
@@ -31,7 +31,7 @@ void MemberShares::calibrate(double said, double mean, double was) {
 void MemberShares::learn_block() {
   double all = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
-    block_[k] /= static_cast<double>(kBlock);
+    block_[k] /= static_cast<double>(scored_);
     all += shares_[k] * block_[k];
   }
   ++losses_.blocks;
@@ -92,7 +92,7 @@ void MemberShares::update_weights() {
 }
 
 void MemberShares::visit(Archive& archive) {
-  archive.whole(scored_, 0, kBlock - 1);
+  archive.whole(scored_, 0, kMostBlock - 1);
   archive.numbers(std::span(block_).first(members_));
   archive.numbers(std::span(losses_.first).first(members_));
   archive.numbers(std::span(losses_.of).first(members_));

@@ -33,15 +33,17 @@ namespace kelpie {
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
-  static constexpr std::size_t kBlock = 20;  ///< samples
+  static constexpr std::size_t kBlock = 20;       ///< samples
+  static constexpr std::size_t kMostBlock = 1000;
 
   /// Begins with these shares, of at most kMostMembers members and with the sum 1.
   explicit MemberShares(std::span<const double> first);
 
   std::span<const double> shares() const { return {shares_.data(), members_}; }
 
-  /// Adds the errors |y − f_k(x)| of one sample [standardised target].
-  void score(std::span<const double> errors);
+  /// Adds the errors |y − f_k(x)| of one sample [standardised target]. `block`: samples of the
+  /// present block, 1 to kMostBlock.
+  void score(std::span<const double> errors, std::size_t block = kBlock);
 
   /// Adds the committee's prediction `said` of a sample before learning, the member `mean`'s
   /// prediction and the true value `was`.

@@ -20,6 +20,7 @@
 #include "model/change_monitor.hpp"
 #include "model/first_moves.hpp"
 #include "model/guarded_axis.hpp"
+#include "model/posterior_axis.hpp"
 #include "model/snapshot.hpp"
 #include "model/update_state.hpp"
 #include "model/work_limit.hpp"
@@ -70,7 +71,7 @@ bool still_named(std::span<const Finding> findings, std::size_t command, double 
 
 // Whether a committee reacts to changes on every axis.
 bool adapts(const ModelSettings& settings) {
-  return settings.shared.learner != LearnerKind::svr &&
+  return settings.shared.learner == LearnerKind::committee &&
          std::ranges::all_of(settings.axes, [](const OnlineSvrSettings& axis) {
            return axis.adapt == AdaptRule::challenger;
          });
@@ -149,14 +150,16 @@ struct DynamicsModel::Parts {
   void apply_change(ChangeMonitor::Event event);
   void update_diagnosis(std::span<const double> x, std::span<const double> y, double t);
   void observe_steady(std::span<const double> x, std::span<const double> y, double t);
-  GuardedAxis& axis_at(std::size_t axis);
+  ModelAxis& axis_at(std::size_t axis) const;
+  template <typename Holds>
+  bool all_axes(Holds holds) const;
   void visit(Archive& archive);
 
   std::vector<std::string> input_names;
   std::vector<std::string> target_names;
   ModelSettings settings;
   UpdateState state;
-  std::vector<GuardedAxis> axes;
+  ModelAxes axes;
   RoomyVector<std::size_t> order;   ///< scratch: the axes in the order of the update at hand
   std::optional<FirstMoves> moves;  ///< for `change` and `diagnosis`
   std::optional<ChangeMonitor> change;
@@ -195,7 +198,6 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
     moves.emplace(commands, target_names.size());
   }
   order.reserve(settings.axes.size());
-  axes.reserve(settings.axes.size());
   for (std::size_t i = 0; i < settings.axes.size(); ++i) {
     std::optional<AxisScaling> given;
     if (scaling != nullptr) {
@@ -204,11 +206,18 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
               "of " + std::to_string(given->term_scale.size()) + " terms; there are " +
                   std::to_string(terms.size()));
     }
-    axes.emplace_back(dimension, settings.shared, settings.axes[i], terms, std::move(given));
+    if (settings.shared.learner == LearnerKind::posterior) {
+      require(!given, "scaling", "'learner = posterior' takes no scale");
+      axes.add(std::make_unique<PosteriorAxis>(dimension, settings.shared, settings.axes[i], terms,
+                                               states));
+    } else {
+      axes.add(std::make_unique<GuardedAxis>(dimension, settings.shared, settings.axes[i], terms,
+                                             std::move(given)));
+    }
   }
 }
 
-GuardedAxis& DynamicsModel::Parts::axis_at(std::size_t axis) {
+ModelAxis& DynamicsModel::Parts::axis_at(std::size_t axis) const {
   if (axis >= axes.size()) {
     throw InputError("axis",
                      std::to_string(axis) + " given; there are " + std::to_string(axes.size()));
@@ -216,12 +225,22 @@ GuardedAxis& DynamicsModel::Parts::axis_at(std::size_t axis) {
   return axes[axis];
 }
 
+template <typename Holds>
+bool DynamicsModel::Parts::all_axes(Holds holds) const {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (!holds(axes[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // Axes with unfinished work on the sample before come first.
 void DynamicsModel::Parts::order_axes() {
   order.clear();
   for (const bool unfinished : {true, false}) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (axes[i].in_service().svr().champion().unfinished() == unfinished) {
+      if (axes[i].unfinished() == unfinished) {
         order.push_back(i);
       }
     }
@@ -230,7 +249,7 @@ void DynamicsModel::Parts::order_axes() {
 
 // The last sample, on all axes: what is of the vehicle, not of an axis, learns only such samples.
 bool DynamicsModel::Parts::trusts_sample() const {
-  return std::ranges::all_of(axes, &GuardedAxis::trusted_last) &&
+  return all_axes([](const ModelAxis& axis) { return axis.trusted_last(); }) &&
          std::ranges::none_of(state.decisions, is_refused);
 }
 
@@ -325,8 +344,9 @@ void DynamicsModel::Parts::observe_steady(std::span<const double> x, std::span<c
     return;
   }
   const Accelerations learned = [this](std::span<const double> at, std::span<double> a) {
-    std::ranges::transform(axes, a.begin(),
-                           [at](const GuardedAxis& axis) { return axis.predict(at); });
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      a[i] = axes[i].predict(at);
+    }
   };
   const bool ready = std::ranges::all_of(state.decisions, is_settled);
   steady->observe(x, y, t, ready ? learned : Accelerations{});
@@ -381,6 +401,12 @@ DynamicsModel::~DynamicsModel() = default;
 std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                  const ModelSettings& settings) {
   const TermSet terms = TermSet::from(settings.shared.terms, inputs, settings.axes.size());
+  if (settings.shared.learner == LearnerKind::posterior) {
+    return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
+                                 std::plus<>{}, [&](const OnlineSvrSettings& axis) {
+                                   return PosteriorAxis::bytes(inputs.size(), terms.size(), axis);
+                                 });
+  }
   const Committee::Plan plan = committee_plan(settings.shared, terms);
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
                                std::plus<>{}, [&](const OnlineSvrSettings& axis) {
@@ -403,7 +429,7 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
   model.order_axes();
   for (std::size_t k = 0; k < axes(); ++k) {
     const std::size_t i = model.order[k];
-    GuardedAxis& axis = model.axes[i];
+    ModelAxis& axis = model.axes[i];
     axis.limit(model.work.grant(model.budget, axes() - 1 - k));
     state.decisions[i] = axis.update(x, y[i], now);  // check, scale, predict, learn, score
     if (done) {
@@ -414,8 +440,8 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
   model.begin_with_the_moves(x, y);
   model.monitor_change(x, y, now);
   model.work.learned(state.crowded_out());
-  for (GuardedAxis& axis : model.axes) {
-    axis.limit(model.budget);  // a grant is good for one update only
+  for (std::size_t i = 0; i < axes(); ++i) {
+    model.axes[i].limit(model.budget);  // a grant is good for one update only
   }
   model.update_diagnosis(x, y, now);
   model.observe_steady(x, y, now);
@@ -424,7 +450,9 @@ void DynamicsModel::update(std::span<const double> x, std::span<const double> y,
 
 void DynamicsModel::learn_held_back() {
   const AccessGuard::Writer writer(parts_->state.access);
-  std::ranges::for_each(parts_->axes, &GuardedAxis::learn_held_back);
+  for (std::size_t i = 0; i < axes(); ++i) {
+    parts_->axes[i].learn_held_back();
+  }
 }
 
 void DynamicsModel::limit(const Budget& budget) {
@@ -444,8 +472,8 @@ const OnlineRegressor& DynamicsModel::axis(std::size_t axis) const {
   return parts_->axis_at(axis);
 }
 
-const DynamicsAxis& DynamicsModel::mechanisms(std::size_t axis) const {
-  return parts_->axis_at(axis).in_service();
+const ModelAxis& DynamicsModel::mechanisms(std::size_t axis) const {
+  return parts_->axis_at(axis);
 }
 
 void DynamicsModel::predict(std::span<const double> x, std::span<double> y) const {
@@ -496,7 +524,7 @@ void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastMode
 }
 
 bool DynamicsModel::ready() const {
-  return std::ranges::all_of(parts_->axes, [](const GuardedAxis& axis) {
+  return parts_->all_axes([](const ModelAxis& axis) {
     const Status status = axis.status();
     return status.ready && !status.early;
   });
@@ -531,10 +559,9 @@ DynamicsModel DynamicsModel::resume_from(const TrainedModel& trained, double sta
 
 TrainedModel DynamicsModel::trained() const {
   const AccessGuard::Reader reader(parts_->state.access);
-  TrainedModel model(parts_->input_names, parts_->settings,
-                     parts_->axes.front().in_service().terms(), {});
+  TrainedModel model(parts_->input_names, parts_->settings, parts_->axes[0].terms(), {});
   for (std::size_t i = 0; i < parts_->axes.size(); ++i) {
-    model.axes.push_back(parts_->axes[i].in_service().trained(parts_->target_names[i]));
+    model.axes.push_back(parts_->axes[i].trained(parts_->target_names[i]));
     if (parts_->steady) {
       model.axes.back().steady = parts_->steady->model(i);
     }
@@ -544,9 +571,9 @@ TrainedModel DynamicsModel::trained() const {
 
 void set_nominal(DynamicsModel& model, std::size_t axis, std::span<const Coefficient> known) {
   const AccessGuard::Writer writer(model.parts_->state.access);
-  GuardedAxis& learner = model.parts_->axis_at(axis);
+  ModelAxis& learner = model.parts_->axis_at(axis);
   if (!known.empty()) {
-    learner.expect_vehicle(coefficients_of(known, learner.in_service().terms()));
+    learner.expect_vehicle(coefficients_of(known, learner.terms()));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "kelpie/model/stored_past_model.hpp"
 #include "model/dynamics_axis.hpp"
 #include "model/expected_target.hpp"
+#include "model/model_axis.hpp"
 #include "model/thinned_rows.hpp"
 
 namespace kelpie {
@@ -49,13 +51,13 @@ namespace kelpie {
 /// One axis learns a sample, so that the guard adds no work to an update, except to the first
 /// updates, and to the few in which a candidate begins. Without `track`, every sample is plausible,
 /// and no candidate is in service.
-class GuardedAxis final : public OnlineRegressor {
+class GuardedAxis final : public ModelAxis {
  public:
   /// As DynamicsAxis.
   GuardedAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
               const TermSet& terms, std::optional<AxisScaling> scaling = {});
 
-  void limit(const Budget& budget);  ///< Committee::limit().
+  void limit(const Budget& budget) override;  ///< Committee::limit().
 
   /// Allocates as DynamicsAxis, and for a new axis in place of a scale too large.
   Decision update(std::span<const double> x, double y, double t) override;
@@ -64,43 +66,43 @@ class GuardedAxis final : public OnlineRegressor {
 
   double predict(std::span<const double> x) const override { return in_service().predict(x); }
   Prediction assess(std::span<const double> x) const override { return in_service().assess(x); }
-  Prediction assess(std::span<const double> x, double ahead_s) const {
+  Prediction assess(std::span<const double> x, double ahead_s) const override {
     return in_service().assess(x, ahead_s);
   }
-  double predict_with_gradient(std::span<const double> x, std::span<double> gradient) const {
+  double predict_with_gradient(std::span<const double> x,
+                               std::span<double> gradient) const override {
     return in_service().predict_with_gradient(x, gradient);
   }
 
   /// Of the axis in service; totals count the samples of all axes.
   Status status() const override;
   std::vector<Coefficient> coefficients() const override { return in_service().coefficients(); }
-  std::vector<MemberShare> members() const override { return in_service().members(); }
 
   /// The axis that predicts.
   const DynamicsAxis& in_service() const { return candidate_serves_ ? candidate() : trusted(); }
   /// Of the trusted axis.
-  std::vector<StoredPastModel> past_models() const { return trusted().past_models(); }
+  std::vector<StoredPastModel> past_models() const override { return trusted().past_models(); }
 
   /// DynamicsAxis::apply_change() of the trusted axis, and of an axis that may take its place.
   void apply_change(std::span<const CommandGain> gains, std::span<const double> step,
-                    const Decision& news);
+                    const Decision& news) override;
 
   /// DynamicsAxis::expect_vehicle(). A further axis that begins anew begins with these, too.
-  void expect_vehicle(std::vector<double> coefficients);
+  void expect_vehicle(std::vector<double> coefficients) override;
 
   /// DynamicsAxis::set_past_models().
-  void set_past_models(std::vector<StoredPastModel> models) {
+  void set_past_models(std::vector<StoredPastModel> models) override {
     given_ = models;
     trusted().set_past_models(std::move(models));
   }
 
   /// Whether the last sample was learned, or held back, by the trusted axis.
-  bool trusted_last() const { return trusted_last_; }
+  bool trusted_last() const override { return trusted_last_; }
 
   /// DynamicsAxis::resume_from().
-  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t);
+  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) override;
 
-  void visit(Archive& archive);  ///< core/archive.hpp
+  void visit(Archive& archive) override;  ///< core/archive.hpp
 
   /// Memory in bytes, for an axis of `axis` bytes: two axes, the doubtful samples, and what physics
   /// leads to expect.
@@ -110,6 +112,18 @@ class GuardedAxis final : public OnlineRegressor {
   }
 
  private:
+  std::unique_ptr<ModelAxis> clone() const override { return std::make_unique<GuardedAxis>(*this); }
+  const DynamicsAxis& dynamics_axis() const override { return in_service(); }
+  const TermSet& terms() const override { return in_service().terms(); }
+  const AxisScaling* scaling() const override { return in_service().scaling(); }
+  Snapshot snapshot() const override { return in_service().snapshot(); }
+  void refresh(Snapshot& copy) const override { in_service().refresh(copy); }
+  Snapshot trained(std::string name) const override {
+    return in_service().trained(std::move(name));
+  }
+  bool unfinished() const override { return in_service().svr().champion().unfinished(); }
+  std::vector<MemberShare> members() const override { return in_service().members(); }
+
   /// Arguments of the constructor.
   struct Arguments {
     std::size_t inputs;

@@ -11,7 +11,7 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::string_view, 2> kLearners{"committee", "svr"};
+constexpr std::array<std::string_view, 3> kLearners{"committee", "svr", "posterior"};
 constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
 constexpr std::array<std::string_view, 3> kPresets{"default", "small", "paper"};
 constexpr std::size_t kPlaneAxes = 3;  // surge, sway, yaw
@@ -23,7 +23,8 @@ constexpr IdleCondition kWithGivenScale{.with = kGivenScale};
 constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
     {"learner",
      "who learns an axis: committee (several learners, each believed as it foretells what lies "
-     "ahead), svr (the paper's learner alone)",
+     "ahead), svr (the paper's learner alone), posterior (one Bayesian regression of terms and "
+     "kernels: docs/method/posterior.md)",
      choice_of<&SharedSettings::learner, SharedSettings>(kLearners),
      {},
      kEssential},
@@ -67,6 +68,10 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      kEssential,
      kWithGivenScale},
 });
+
+// Of the committee and the paper's learner, which `learner = posterior` has no use for.
+constexpr std::array<std::string_view, 5> kIdleInPosterior{"scaling", "track", "warmup", "adapt",
+                                                           "memory"};
 
 // Settings of older files, and what to write instead.
 constexpr std::array kRemoved = std::to_array<std::pair<std::string_view, std::string_view>>({
@@ -250,6 +255,13 @@ std::vector<std::string> ModelSettings::notes(std::span<const std::string> names
   std::vector<std::string> notes;
   for_each_field([&](const auto& field) {
     const IdleCondition& idle = field.idle;
+    if (shared.learner == LearnerKind::posterior &&
+        std::ranges::count(kIdleInPosterior, field.name) > 0 &&
+        std::ranges::count(names, field.name) > 0) {
+      notes.push_back("setting " + std::string(field.name) +
+                      " has no effect with learner = posterior");
+      return;
+    }
     const bool asked = std::ranges::count(names, field.name) > 0;
     const std::string& value = value_of.find(field.name)->second;
     if (asked && value != "0" && value != "none" && !idle.with.empty() && no_effect(idle)) {

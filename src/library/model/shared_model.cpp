@@ -6,7 +6,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "model/answer.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "model/snapshot.hpp"
 
 namespace kelpie {

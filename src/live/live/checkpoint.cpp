@@ -9,7 +9,7 @@
 #include "format/run_checkpoint.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/kelpie.h"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 
 namespace kelpie::live {
 namespace {

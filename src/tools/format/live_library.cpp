@@ -21,7 +21,7 @@
 #include "file/mapped_file.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "model/snapshot.hpp"
 
 namespace kelpie::format {

@@ -20,7 +20,7 @@
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/navigation/dead_reckoning.hpp"
 #include "kelpie/vehicle/diagnosis.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 
 namespace kelpie::c_test {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The disturbance at the model's door.
 #include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 
 #include <gtest/gtest.h>
 
@@ -77,7 +78,7 @@ TEST(DynamicsAxis, TheDisturbanceFadesWithTime) {
   for (std::size_t i = 0; i < samples.x.size(); ++i) {
     model.update(samples.x[i], samples.y[i], kStepS * static_cast<double>(i));
   }
-  const Disturbance& disturbance = model.mechanisms(0).disturbance();
+  const Disturbance& disturbance = model.mechanisms(0).dynamics_axis().disturbance();
   const double soon = disturbance.ahead(0.0, 2.0 * kStepS);
   EXPECT_GT(disturbance.autocorrelation(), 0.5);
   EXPECT_NEAR(disturbance.ahead(0.0, 4.0 * kStepS) / soon,

@@ -11,7 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
 

@@ -14,6 +14,7 @@
 #include "kelpie/model/stored_past_model.hpp"
 #include "kelpie/svr/resources.hpp"
 #include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "vehicle_stream.hpp"
 
 namespace kelpie::real_time_test {
@@ -116,7 +117,7 @@ TEST(RealTime, PastModelsFollowAScaleUnseen) {
         ASSERT_NEAR(now.inputs[2 * k + 1], before.inputs[2 * k + 1], 1e-6) << i;
       }
       ASSERT_NEAR(now.info.usual_error, before.info.usual_error, 1e-9) << i;
-      const AdaptiveSvr& learner = model.mechanisms(1).svr();
+      const AdaptiveSvr& learner = model.mechanisms(1).dynamics_axis().svr();
       on_the_way = on_the_way || learner.rescaled() < learner.past_models().models().size();
     }
   }

@@ -10,7 +10,7 @@
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "model/snapshot.hpp"
 #include "support.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "allocation_count.hpp"
 #include "files/model_block.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "vehicle_stream.hpp"
 
 namespace kelpie::shared_model_test {

@@ -14,6 +14,7 @@
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 
 namespace kelpie::stored_past_model_test {
 namespace {
@@ -110,7 +111,7 @@ TEST(StoredPastModel, WhereThereIsLessRoomTheLatestSamplesStay) {
   Trial trial(0.0);
   trial.drive(1.0, 1500);
   const StoredPastModel model = trial.model().past_models(0).front();
-  const DynamicsAxis& axis = trial.model().mechanisms(0);
+  const DynamicsAxis& axis = trial.model().mechanisms(0).dynamics_axis();
   OnlineSvrSettings small = axis.svr().champion().settings();
   small.buffer = 20;
   ASSERT_NE(axis.scaling(), nullptr);

@@ -21,7 +21,7 @@
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/shared_model.hpp"
-#include "model/dynamics_axis.hpp"
+#include "model/model_axis.hpp"
 #include "model/random_model.hpp"
 #include "model/vehicle_stream.hpp"
 #include "support.hpp"

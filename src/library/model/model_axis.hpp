@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kelpie/model/stored_past_model.hpp"
+#include "kelpie/motion/term_set.hpp"
+#include "kelpie/svr/regressor.hpp"
+#include "kelpie/svr/resources.hpp"
+#include "model/command_gain.hpp"
+#include "model/snapshot.hpp"
+
+namespace kelpie {
+
+class DynamicsAxis;
+
+/// One axis of a DynamicsModel, whatever learns: a regressor on raw samples with copies of the
+/// model in service for others. Steps of an update, states and exceptions are those of
+/// DynamicsModel.
+class ModelAxis : public OnlineRegressor {
+ public:
+  virtual std::unique_ptr<ModelAxis> clone() const = 0;
+  virtual void limit(const Budget& budget) = 0;  ///< Of the next update.
+  virtual bool unfinished() const = 0;           ///< Work of earlier samples is left.
+  virtual bool trusted_last() const = 0;         ///< The last sample was none of garbage.
+
+  using OnlineRegressor::assess;
+  virtual Prediction assess(std::span<const double> x, double ahead_s) const = 0;
+  virtual double predict_with_gradient(std::span<const double> x,
+                                       std::span<double> gradient) const = 0;
+
+  virtual const TermSet& terms() const = 0;
+  virtual const AxisScaling* scaling() const = 0;        ///< Null while the scale is not known.
+  virtual Snapshot snapshot() const = 0;                 ///< DynamicsAxis::snapshot()
+  virtual void refresh(Snapshot& copy) const = 0;        ///< DynamicsAxis::refresh()
+  virtual Snapshot trained(std::string name) const = 0;  ///< DynamicsAxis::trained()
+
+  /// DynamicsAxis::apply_change(), of a learner that the ChangeMonitor serves.
+  virtual void apply_change(std::span<const CommandGain>, std::span<const double>,
+                            const Decision&) {}
+  virtual void expect_vehicle(std::vector<double> coefficients) = 0;
+  virtual std::vector<StoredPastModel> past_models() const { return {}; }
+  virtual void set_past_models(std::vector<StoredPastModel> models) = 0;
+  virtual void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) = 0;
+
+  /// The axis in service of a committee or of the paper's learner; throws InputError else.
+  virtual const DynamicsAxis& dynamics_axis() const = 0;
+  virtual void visit(Archive& archive) = 0;  ///< core/archive.hpp
+};
+
+/// The axes of a model, in the order of the targets. Copies are deep.
+class ModelAxes {
+ public:
+  ModelAxes() = default;
+  ~ModelAxes() = default;
+  ModelAxes(ModelAxes&&) noexcept = default;
+  ModelAxes& operator=(ModelAxes&&) noexcept = default;
+  ModelAxes(const ModelAxes& other) {
+    for (const std::unique_ptr<ModelAxis>& axis : other.axes_) {
+      axes_.push_back(axis->clone());
+    }
+  }
+  ModelAxes& operator=(const ModelAxes& other) { return *this = ModelAxes(other); }
+
+  void add(std::unique_ptr<ModelAxis> axis) { axes_.push_back(std::move(axis)); }
+  std::size_t size() const { return axes_.size(); }
+  ModelAxis& operator[](std::size_t i) const { return *axes_[i]; }
+
+ private:
+  std::vector<std::unique_ptr<ModelAxis>> axes_;
+};
+
+}  // namespace kelpie

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/posterior_axis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/vector.hpp"
+#include "kelpie/core/error.hpp"
+#include "posterior/tuning.hpp"
+#include "svr/valid_sample.hpp"
+
+namespace kelpie {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+SvrFunction empty_function(const Features& features) {
+  const KernelBasis& basis = features.basis();
+  return {
+      MixedKernel(basis.kernel().gamma(), {}, basis.centres().dimension(), features.terms().size()),
+      basis.centres().capacity()};
+}
+
+// From the samples of one scale to the samples of another. Inputs without a unit stand at their
+// mean.
+SampleMap map_between(const AxisScaling& from, const AxisScaling& to) {
+  return [from, to](std::span<double> sample, double& y) {
+    const std::size_t inputs = from.input.dimension();
+    const ScaledInput x = from.input.invert(sample.first(inputs));
+    std::ranges::copy(to.input.apply(as_span(x)), sample.begin());
+    for (std::size_t k = 0; k < to.term_scale.size(); ++k) {
+      sample[inputs + k] *= from.term_scale[k] / to.term_scale[k];
+    }
+    y = to.target.apply(from.target.invert(y));
+  };
+}
+
+}  // namespace
+
+PosteriorAxis::PosteriorAxis(std::size_t inputs, const SharedSettings& shared,
+                             const OnlineSvrSettings& settings, const TermSet& terms,
+                             std::span<const std::size_t> states)
+    : features_(inputs, terms, states, centres_of(settings)),
+      posterior_(features_.capacity(), features_.terms_end()),
+      scaling_{.input = features_.units(),
+               .target = {},
+               .term_scale = std::vector<double>(terms.size(), 1.0)},
+      mixture_(empty_function(features_), settings),
+      known_{SampleStore(inputs, centres_of(settings)),
+             KernelDensity(inputs, centres_of(settings),
+                           KernelDensity::scott(inputs, centres_of(settings)))},
+      interval_(shared.coverage),
+      corrected_interval_(shared.coverage) {
+  settings.validate();
+  beta_.reserve(features_.basis().centres().capacity());
+}
+
+std::size_t PosteriorAxis::centres_of(const OnlineSvrSettings& settings) {
+  return static_cast<std::size_t>(settings.buffer) / kPosterior.buffer_per_centre + 1;
+}
+
+// The way of a sample.
+Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
+  trusted_last_ = false;
+  if (!valid_sample(x, features_.units().dimension(), y, t)) {
+    ++tally_.invalid;
+    return {.verdict = Verdict::invalid,
+            .prediction = {.value = std::numeric_limits<double>::quiet_NaN()},
+            .had_model = posterior_.ready()};
+  }
+  Decision decision{.prediction = {.value = predict(x)}, .had_model = posterior_.ready()};
+  score(decision, y, t);
+  if (has_scale_) {
+    mixture_.update(as_span(scale_sample(scaling_, terms(), x)), scaling_.target.apply(y), t,
+                    block_length());
+  }
+  learn(x, y);
+  if (posterior_.wants_solve() && posterior_.solve(features_.groups(), budget_)) {
+    const bool fits =
+        has_scale_ && posterior_.targets().scale < kPosterior.outgrown * scaling_.target.scale;
+    fits ? serve() : change_scale();
+    decision.published = true;
+  }
+  ++tally_.accepted;
+  return decision;
+}
+
+// The intervals around the prediction, and what the error teaches them and the disturbance.
+void PosteriorAxis::score(Decision& decision, double y, double t) {
+  if (!decision.had_model) {
+    return;
+  }
+  Prediction& said = decision.prediction;
+  said.lower = said.value - interval_.half_width();
+  said.upper = said.value + interval_.half_width();
+  interval_.observe(std::abs(y - said.value));
+  said.disturbance = disturbance_.at(said.value, t);
+  const double corrected = said.value + said.disturbance;
+  said.corrected_lower = corrected - corrected_interval_.half_width();
+  said.corrected_upper = corrected + corrected_interval_.half_width();
+  corrected_interval_.observe(std::abs(y - corrected));
+  disturbance_.observe(said.value, y, t);
+}
+
+void PosteriorAxis::learn(std::span<const double> x, double y) {
+  const double trust = features_.trust(x);
+  trusted_last_ = trust == 1.0;
+  if (const std::optional<Matrix> t = features_.observe(x, trust)) {
+    posterior_.change_features(features_.terms_end(), *t);
+    known_.samples.clear();
+    known_.density.clear();
+    if (posterior_.ready()) {
+      change_scale();
+    }
+  }
+  const std::span<const double> phi = features_.learn(x);
+  posterior_.add(phi, y - expected(x), trust);
+  know_centres();
+}
+
+// What was known beforehand says of raw inputs.
+double PosteriorAxis::expected(std::span<const double> x) const {
+  if (prior_.empty()) {
+    return 0.0;
+  }
+  std::array<double, kMostTerms> room{};
+  const std::span<double> values = std::span(room).first(terms().size());
+  terms().evaluate(x, values);
+  return prior_.front() + dot(std::span(prior_).subspan(1), std::span<const double>(values));
+}
+
+// Inputs in the units of the kernel; terms and target by their sizes so far.
+void PosteriorAxis::change_scale() {
+  AxisScaling next{.input = features_.units(),
+                   .target = posterior_.targets(),
+                   .term_scale = std::vector<double>(terms().size(), 1.0)};
+  for (std::size_t k = 0; k < terms().size(); ++k) {
+    const double size = posterior_.root_mean_square(k + 1);
+    if (size > 0.0) {
+      next.term_scale[k] = size;
+    }
+  }
+  if (has_scale_) {
+    mixture_.move(map_between(scaling_, next));
+  }
+  scaling_ = std::move(next);
+  has_scale_ = true;
+  serve();
+  mixture_.freeze();
+}
+
+// Weights of the terms by scaled terms, the last number the bias.
+PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta) const {
+  TermWeights weights(theta.size());
+  const auto whole = [&](std::size_t k) { return theta[k] + (prior_.empty() ? 0.0 : prior_[k]); };
+  for (std::size_t k = 1; k < theta.size(); ++k) {
+    weights[k - 1] = whole(k) * scaling_.term_scale[k - 1] / scaling_.target.scale;
+  }
+  weights[theta.size() - 1] = scaling_.target.apply(posterior_.centre() + whole(0));
+  return weights;
+}
+
+// The posterior's mean as a function of scaled kernels and terms.
+void PosteriorAxis::serve() {
+  const std::span<const double> theta = posterior_.weights();
+  const std::size_t first = features_.terms_end();
+  const double scale = scaling_.target.scale;
+  beta_.assign(features_.basis().size(), 0.0);  // centres that came since have no weight yet
+  std::ranges::transform(theta.subspan(first), beta_.begin(),
+                         [&](double weight) { return weight / scale; });
+  features_.basis().to_kernel(beta_);
+  mixture_.assign_posterior(features_.basis().centres(), beta_,
+                            as_span(scaled(theta.first(first))));
+  mixture_.assign_terms(as_span(scaled(posterior_.first_weights())));
+  const double mean = scaling_.target.apply(posterior_.centre());
+  mixture_.assign_mean({&mean, 1});
+}
+
+// Novelty compares places with all centres.
+void PosteriorAxis::know_centres() {
+  std::array<double, kMostInputs> z{};
+  const std::span<double> centre = std::span(z).first(features_.units().dimension());
+  while (known_.samples.size() < features_.basis().size()) {
+    features_.basis().centres().get(known_.samples.size(), centre);
+    known_.density.add(centre, known_.samples);
+    known_.samples.push_back(centre);
+  }
+}
+
+// A block of losses holds independent samples.
+std::size_t PosteriorAxis::block_length() const {
+  const double rows = kPosterior.block * posterior_.rows_per_sample();
+  return std::clamp(static_cast<std::size_t>(rows), MemberShares::kBlock, MemberShares::kMostBlock);
+}
+
+IntervalState PosteriorAxis::intervals() const {
+  return {interval_.half_width(), corrected_interval_.half_width(), &disturbance_};
+}
+
+double PosteriorAxis::predict(std::span<const double> x) const {
+  return has_scale_ ? ServedAxis<FunctionMix>{scaling_, terms(), mixture_.function()}.predict(x)
+                    : posterior_.centre();
+}
+
+Prediction PosteriorAxis::assess(std::span<const double> x, double ahead_s) const {
+  if (!has_scale_) {
+    return {.value = predict(x), .novelty = 1.0};
+  }
+  const auto novelty = [&](std::span<const double> z) { return known_.novelty(z); };
+  return ServedAxis<FunctionMix>{scaling_, terms(), mixture_.function()}.assess(x, intervals(),
+                                                                                novelty, ahead_s);
+}
+
+double PosteriorAxis::predict_with_gradient(std::span<const double> x,
+                                            std::span<double> gradient) const {
+  if (has_scale_) {
+    return ServedAxis<FunctionMix>{scaling_, terms(), mixture_.function()}.predict_with_gradient(
+        x, gradient);
+  }
+  std::ranges::fill(gradient, 0.0);
+  return predict(x);
+}
+
+Status PosteriorAxis::status() const {
+  const auto centres = static_cast<int>(features_.basis().size());
+  return {
+      .buffer = centres, .support_vectors = centres, .ready = posterior_.ready(), .tally = tally_};
+}
+
+std::vector<Coefficient> PosteriorAxis::coefficients() const {
+  std::vector<Coefficient> list;
+  for (std::size_t k = 0; posterior_.ready() && k < terms().size(); ++k) {
+    list.push_back({.term = terms().text(k),
+                    .value = posterior_.weights()[k + 1] + (prior_.empty() ? 0.0 : prior_[k + 1]),
+                    .error = posterior_.error(k + 1)});
+  }
+  return list;
+}
+
+Snapshot PosteriorAxis::snapshot() const {
+  return {.name = {},
+          .scaling = scaling_,
+          .function = mixture_.function(),
+          .half_width = interval_.half_width(),
+          .known = known_,
+          .corrected_half_width = corrected_interval_.half_width(),
+          .disturbance = disturbance_};
+}
+
+void PosteriorAxis::refresh(Snapshot& copy) const {
+  const FunctionMix& served = mixture_.function();
+  copy.scaling = scaling_;
+  copy.function.limits = served.limits;
+  copy.function.term_ranges = served.term_ranges;
+  for (std::size_t k = 0; k < served.members.size(); ++k) {
+    copy.function.members[k].share = served.members[k].share;
+    copy.function.members[k].function.assign(served.members[k].function);
+  }
+  copy.known->samples.assign(known_.samples);
+  copy.known->density.assume(known_.density.sums());
+  copy.half_width = interval_.half_width();
+  copy.corrected_half_width = corrected_interval_.half_width();
+  copy.disturbance = disturbance_;
+}
+
+Snapshot PosteriorAxis::trained(std::string name) const {
+  Snapshot copy = snapshot();
+  copy.name = std::move(name);
+  copy.corrected_half_width = kInfinite;
+  copy.disturbance.reset();
+  return copy;
+}
+
+void PosteriorAxis::expect_vehicle(std::vector<double> coefficients) {
+  prior_ = std::move(coefficients);
+  std::ranges::rotate(prior_, prior_.end() - 1);  // the term 1 is the first feature
+  mixture_.expect_vehicle();
+}
+
+void PosteriorAxis::set_past_models(std::vector<StoredPastModel> models) {
+  require(models.empty(), "learner", "'posterior' keeps no past models; 'committee' does");
+}
+
+void PosteriorAxis::resume_from(const AxisScaling&, const FunctionMix&, double) {
+  throw InputError("learner",
+                   "'posterior' goes on from a checkpoint or a saved state, not from a model");
+}
+
+const DynamicsAxis& PosteriorAxis::dynamics_axis() const {
+  throw InputError("learner", "'posterior' has no mechanisms of a committee");
+}
+
+void PosteriorAxis::visit(Archive& archive) {
+  archive.part("features", features_);
+  archive.part("posterior", posterior_);
+  archive.list(prior_, terms().size() + 1, [&](double& one) { archive.number(one); });
+  archive.part("interval", interval_);
+  archive.part("disturbance", disturbance_);
+  archive.part("interval with disturbance", corrected_interval_);
+  archive.flag(trusted_last_);
+  archive.part("tally", tally_);
+  if (archive.loading()) {
+    know_centres();
+  }
+  archive.flag(has_scale_);
+  if (has_scale_) {
+    scaling_.visit(archive, features_.units().dimension(), terms().size());
+    archive.part("mixture", mixture_);
+    if (archive.loading()) {
+      serve();
+    }
+  }
+}
+
+std::size_t PosteriorAxis::bytes(std::size_t inputs, std::size_t terms,
+                                 const OnlineSvrSettings& settings) {
+  const std::size_t centres = centres_of(settings);
+  const std::size_t m = centres + terms + 1;
+  return sizeof(PosteriorAxis) +
+         (3 * m * (m + 1) / 2 + centres * (centres + 1) / 2 + 10 * m) * sizeof(double) +
+         2 * SampleStore::bytes(inputs, centres) + KernelDensity::bytes(inputs, centres) +
+         Mixture::bytes(inputs, terms, centres, settings);
+}
+
+}  // namespace kelpie

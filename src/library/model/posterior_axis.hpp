@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/roomy_vector.hpp"
+#include "kelpie/model/settings.hpp"
+#include "learner/conformal.hpp"
+#include "learner/disturbance.hpp"
+#include "model/model_axis.hpp"
+#include "posterior/features.hpp"
+#include "posterior/mixture.hpp"
+#include "posterior/posterior.hpp"
+
+namespace kelpie {
+
+/// An axis learned by one Posterior (`learner = posterior`): features, posterior, and the model in
+/// service, with an interval and the disturbance around its predictions. update() is the way of a
+/// sample. Before the first solve, after ten samples, the mean of the targets is in service.
+///
+/// The model in service is a function of kernels and terms, as of any learner, within the targets
+/// seen and a tenth of their range.
+class PosteriorAxis final : public ModelAxis {
+ public:
+  PosteriorAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,
+                const TermSet& terms, std::span<const std::size_t> states);
+
+  /// Memory in bytes.
+  static std::size_t bytes(std::size_t inputs, std::size_t terms,
+                           const OnlineSvrSettings& settings);
+
+ private:
+  std::unique_ptr<ModelAxis> clone() const override {
+    return std::make_unique<PosteriorAxis>(*this);
+  }
+  Decision update(std::span<const double> x, double y, double t) override;
+  void limit(const Budget& budget) override {
+    budget_ = budget;
+    mixture_.limit(budget);
+  }
+  bool unfinished() const override { return posterior_.wants_solve() || mixture_.unfinished(); }
+  bool trusted_last() const override { return trusted_last_; }
+
+  double predict(std::span<const double> x) const override;
+  using ModelAxis::assess;
+  Prediction assess(std::span<const double> x) const override { return assess(x, 0.0); }
+  Prediction assess(std::span<const double> x, double ahead_s) const override;
+  double predict_with_gradient(std::span<const double> x,
+                               std::span<double> gradient) const override;
+
+  Status status() const override;
+  std::vector<Coefficient> coefficients() const override;
+  std::vector<MemberShare> members() const override { return mixture_.members(); }
+
+  const TermSet& terms() const override { return features_.terms(); }
+  Snapshot snapshot() const override;
+  void refresh(Snapshot& copy) const override;
+  Snapshot trained(std::string name) const override;
+
+  /// The prior's mean: coefficients of the terms, the last of the term 1. Requires that nothing has
+  /// been learned yet.
+  void expect_vehicle(std::vector<double> coefficients) override;
+  /// Throws InputError: past models are the paper's learner's.
+  void set_past_models(std::vector<StoredPastModel> models) override;
+  /// Throws InputError: the sums of a posterior are not in a trained model.
+  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) override;
+  const AxisScaling* scaling() const override { return has_scale_ ? &scaling_ : nullptr; }
+  const DynamicsAxis& dynamics_axis() const override;  ///< Throws InputError.
+
+  void visit(Archive& archive) override;
+
+  using TermWeights = ShortVector<kMostTerms + 1>;
+
+  static std::size_t centres_of(const OnlineSvrSettings& settings);
+  double expected(std::span<const double> x) const;
+  void learn(std::span<const double> x, double y);
+  void change_scale();
+  TermWeights scaled(std::span<const double> theta) const;
+  void serve();
+  std::size_t block_length() const;
+  void know_centres();
+  void score(Decision& decision, double y, double t);
+  IntervalState intervals() const;
+
+  Features features_;
+  Posterior posterior_;        ///< of the targets less what was expected()
+  std::vector<double> prior_;  ///< the prior's mean of the first features; empty: 0
+  AxisScaling scaling_;        ///< of the mixture
+  bool has_scale_ = false;     ///< after the first solve
+  Mixture mixture_;            ///< in service
+  KnownPlaces known_;          ///< the centres, for novelty
+  ConformalInterval interval_;
+  ConformalInterval corrected_interval_;
+  Disturbance disturbance_;
+  bool trusted_last_ = true;
+  Tally tally_;
+  Budget budget_;
+  RoomyVector<double> beta_;  ///< scratch
+};
+
+}  // namespace kelpie

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "kelpie/core/archive.hpp"
+#include "kelpie/svr/regressor.hpp"
+#include "kelpie/svr/resources.hpp"
+#include "kelpie/svr/settings.hpp"
+#include "learner/member_shares.hpp"
+#include "learner/seen_range.hpp"
+#include "posterior/paper_member.hpp"
+#include "svr/function_mix.hpp"
+
+namespace kelpie {
+
+/// The function in service of an axis, on scaled samples: the mean of four members, weighted by
+/// losses on samples that the members have not learned yet (MemberShares):
+///
+///     posterior  the posterior's mean
+///     terms      the posterior of the terms of the equation of motion alone, without kernel
+///     svr        the paper's learner
+///     mean       the mean of the targets, for axes without predictable structure
+///
+/// Limits as of a Committee: each member stays within the targets seen (SeenRange), terms stay
+/// within twice their ranges, and disagreement of the members shrinks the value towards the mean.
+///
+/// Allocates in the constructor, and in move().
+class Mixture {
+ public:
+  /// `posterior`: an empty function of the posterior's kernel, with room for its centres.
+  Mixture(const SvrFunction& posterior, const OnlineSvrSettings& settings);
+
+  const FunctionMix& function() const { return mix_; }  ///< In service.
+  std::vector<MemberShare> members() const;
+  bool unfinished() const { return paper_.unfinished(); }
+
+  void limit(const Budget& budget) { paper_.limit(budget); }
+
+  /// Scores what the members said `block` samples before, or fewer, and lets the paper's learner
+  /// learn a sample.
+  void update(std::span<const double> z, double y, double t, std::size_t block);
+
+  /// A function of a solve. `weights`: of the terms, the last number the bias.
+  void assign_posterior(const SampleStore& centres, std::span<const double> beta,
+                        std::span<const double> weights);
+  void assign_terms(std::span<const double> weights) { assign_linear(kOfTerms, weights); }
+  void assign_mean(std::span<const double> weights) { assign_linear(kOfMean, weights); }
+
+  /// Samples are in another scale from now on, `map` of the scale so far. Functions of a solve
+  /// have to be assigned next, and then freeze() called.
+  void move(const SampleMap& map);
+  void freeze();
+
+  /// The posterior begins with a vehicle known beforehand: the members that know the vehicle have
+  /// larger shares until errors are known, and terms have no range. Requires that nothing has been
+  /// learned yet.
+  void expect_vehicle();
+
+  void visit(Archive& archive);  ///< core/archive.hpp; without functions of a solve
+
+  /// Memory in bytes, beside the object itself. Requires settings that validate.
+  static std::size_t bytes(std::size_t inputs, std::size_t terms, std::size_t centres,
+                           const OnlineSvrSettings& settings);
+
+ private:
+  enum Place : std::size_t { kOfPosterior, kOfTerms, kOfPaper, kOfMean, kMembers };
+
+  void score(std::span<const double> z, double y, std::size_t block);
+  void assign_linear(Place member, std::span<const double> weights);
+  void see(std::span<const double> z, double y);
+  void limit();
+  void serve();
+
+  PaperMember paper_;
+  FunctionMix mix_;
+  MemberShares shares_;
+  SeenRange seen_;  ///< targets
+  SeenTermRanges seen_terms_;
+  std::vector<SvrFunction> frozen_;  ///< the members at the begin of a block of losses
+};
+
+}  // namespace kelpie

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "posterior/posterior.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/decomposition.hpp"
+#include "core/eigen.hpp"
+#include "core/vector.hpp"
+#include "posterior/tuning.hpp"
+
+namespace kelpie {
+
+Posterior::Posterior(std::size_t capacity, std::size_t first)
+    : gram_(capacity),
+      precision_(kMostGroups, 1.0),
+      sums_(capacity),
+      factor_(capacity),
+      first_(first),
+      first_factor_(first),
+      first_scale_(first, 1.0) {
+  first_factor_.resize(first);
+  for (RoomyVector<double>* const numbers :
+       {&moment_, &scale_, &right_, &theta_, &variance_, &scratch_, &weights_, &errors_}) {
+    numbers->reserve(capacity);
+  }
+}
+
+void Posterior::add(std::span<const double> phi, double y, double trust) {
+  if (rows_ >= kPosterior.first_rows && !differ() && y == origin_) {
+    return;  // at rest: more of the same would outvote the vehicle that sets off
+  }
+  double weight = trust;
+  if (ready()) {
+    const double error = (y - value(phi)) / (spread_ * std::sqrt(noise_));
+    correlation_.add(std::clamp(error, -kPosterior.most_deviations, kPosterior.most_deviations));
+    const double square = error * error * noise_ / (noise_ + variance_of_first(phi));
+    weight *= (kPosterior.freedom + 1.0) / (kPosterior.freedom + square);
+  }
+  origin_ = rows_ == 0.0 ? y : origin_;
+  y -= origin_;
+  gram_.resize(phi.size());
+  moment_.resize(phi.size());
+  gram_.add_square(weight, phi);
+  add_scaled(weight * y, phi, {moment_.data(), moment_.size()});
+  rows_ += 1.0;
+  weight_ += weight;
+  square_ += weight * y * y;
+}
+
+double Posterior::value(std::span<const double> phi) const {
+  return ready() ? centre_ + dot(weights(), phi.first(weights_.size())) : centre();
+}
+
+// Of the first features' posterior, in variances of the target.
+double Posterior::variance_of_first(std::span<const double> phi) {
+  scratch_.resize(std::max(scratch_.size(), first_.size()));
+  const std::span<double> z{scratch_.data(), first_.size()};
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    z[i] = phi[i] / first_scale_[i];
+  }
+  first_factor_.solve_lower(z);
+  return dot(std::span<const double>(z), std::span<const double>(z));
+}
+
+double Posterior::error(std::size_t feature) const {
+  return feature < errors_.size() ? errors_[feature] : std::numeric_limits<double>::infinity();
+}
+
+TargetScaling Posterior::targets() const {
+  if (weight_ == 0.0) {
+    return {};
+  }
+  const double mean = moment_[0] / weight_;
+  const double variance = square_ / weight_ - mean * mean;
+  return {origin_ + mean, std::sqrt(std::max(variance, std::numeric_limits<double>::min()))};
+}
+
+double Posterior::root_mean_square(std::size_t feature) const {
+  return std::sqrt(gram_.diagonal(feature) / weight_);
+}
+
+// Targets that never differed tell nothing, and have no unit.
+bool Posterior::differ() const {
+  return targets().scale > std::max(1e-150, kPosterior.least_deviation * std::abs(origin_));
+}
+
+bool Posterior::wants_solve() const {
+  const double enough =
+      std::max(kPosterior.rows_per_feature * static_cast<double>(gram_.size()),
+               std::min(kPosterior.solve_share * rows_, kPosterior.most_unsolved));
+  const bool is_due = rows_ >= kPosterior.first_rows && rows_ - served_at_ >= enough;
+  return task_ != Task::none || (is_due && differ());
+}
+
+bool Posterior::solve(std::span<const std::uint8_t> group, Budget& budget) {
+  if (task_ == Task::none) {
+    begin_solve(group);
+  }
+  Work left = kPosterior.slice;
+  for (std::size_t work = 0; left > 0 && budget.spend(work); left -= static_cast<Work>(work)) {
+    work = step(group);
+    if (task_ == Task::none) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// The sums may go on growing while the solve is at hand.
+void Posterior::begin_solve(std::span<const std::uint8_t> group) {
+  const std::size_t m = gram_.size();
+  const TargetScaling targets = this->targets();
+  const double mean = targets.mean - origin_;
+  begun_ = {.rows = rows_,
+            .rows_per_sample =
+                std::clamp(correlation_.rows_per_sample(), 1.0, std::max(1.0, rows_ / 20.0)),
+            .centre = targets.mean,
+            .spread = targets.scale,
+            .square = weight_};
+  for (RoomyVector<double>* const numbers : {&scale_, &right_, &theta_, &variance_, &scratch_}) {
+    numbers->assign(m, 0.0);
+  }
+  sums_.resize(m);
+  factor_.resize(m);
+  const double information = 1.0 / (noise_ * begun_.rows_per_sample);
+  for (std::size_t i = 0; i < m; ++i) {
+    const double square = gram_.diagonal(i) / weight_;
+    // A feature without a value yet keeps the prior.
+    scale_[i] = square > std::numeric_limits<double>::min() ? std::sqrt(square) : 1e150;
+    right_[i] = (moment_[i] - mean * gram_.row(i)[0]) / (scale_[i] * begun_.spread);
+    for (std::size_t j = 0; j <= i; ++j) {
+      sums_.row(i)[j] = gram_.row(i)[j] / (scale_[i] * scale_[j]);
+      factor_.row(i)[j] = information * sums_.row(i)[j];
+    }
+    factor_.row(i)[i] += group[i] == kFlat ? kPosterior.flat : precision_[group[i]];
+  }
+  task_ = Task::factorise;
+  next_ = 0;
+}
+
+// A row of the factor, or a column of its inverse; returns the work.
+std::size_t Posterior::step(std::span<const std::uint8_t> group) {
+  const std::size_t m = factor_.size();
+  const std::size_t done = task_ == Task::factorise ? next_ : m - next_;
+  if (task_ == Task::factorise) {
+    factor_.factorise_row(next_);
+  } else {
+    find_variance(next_);
+  }
+  if (++next_ == m) {
+    next_ = 0;
+    if (task_ == Task::factorise) {
+      find_weights({theta_.data(), m});
+      const bool is_due = begun_.rows < kPosterior.young_rows ||
+                          begun_.rows >= kPosterior.widths_growth * widths_at_;
+      task_ = is_due ? Task::invert : Task::none;
+    } else {
+      update_widths(group);
+      task_ = Task::none;
+    }
+    if (task_ == Task::none) {
+      update_noise();
+      serve();
+      if (begun_.rows < kPosterior.young_rows && ++round_ < kPosterior.young_rounds) {
+        begin_solve(group);
+      } else {
+        round_ = 0;
+      }
+    }
+  }
+  return done * done / 2;
+}
+
+// Of the first theta.size() features.
+void Posterior::find_weights(std::span<double> theta) const {
+  std::copy_n(right_.begin(), theta.size(), theta.begin());
+  factor_.solve_lower(theta);
+  factor_.solve_upper(theta);
+  for (double& one : theta) {
+    one /= noise_ * begun_.rows_per_sample;
+  }
+}
+
+// Σ_kk = |L⁻¹ e_k|²
+void Posterior::find_variance(std::size_t k) {
+  const std::size_t m = factor_.size();
+  const std::span<double> x{scratch_.data() + k, m - k};
+  double square = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::span<const double> row = factor_.row(k + i).subspan(k);
+    x[i] = ((i == 0 ? 1.0 : 0.0) - dot(row.first(i), x.first(i))) / row[i];
+    square += x[i] * x[i];
+  }
+  variance_[k] = square;
+}
+
+void Posterior::update_widths(std::span<const std::uint8_t> group) {
+  struct Sums {
+    double features = 0.0, trace = 0.0, square = 0.0;
+  };
+  std::array<Sums, kMostGroups> sums{};
+  for (std::size_t i = 0; i < theta_.size(); ++i) {
+    if (group[i] != kFlat) {
+      Sums& one = sums.at(group[i]);
+      one.features += 1.0;
+      one.trace += variance_[i];
+      one.square += theta_[i] * theta_[i];
+    }
+  }
+  informed_ = 1.0;
+  for (std::size_t g = 0; g < kMostGroups; ++g) {
+    const double informed = std::max(0.0, sums.at(g).features - precision_[g] * sums.at(g).trace);
+    informed_ += informed;
+    const double weight = g == kKernel ? kPosterior.kernel_hyperprior : kPosterior.hyperprior;
+    precision_[g] = std::clamp((informed + weight) / (sums.at(g).square + weight),
+                               kPosterior.least_precision, kPosterior.most_precision);
+  }
+  widths_at_ = begun_.rows;
+}
+
+// Errors that fall as weights fit the noise leave fewer samples for its estimate.
+void Posterior::update_noise() {
+  sums_.multiply({theta_.data(), theta_.size()}, {scratch_.data(), scratch_.size()});
+  const std::span<const double> theta{theta_.data(), theta_.size()};
+  const double left = begun_.square - 2.0 * dot(theta, {right_.data(), right_.size()}) +
+                      dot(theta, {scratch_.data(), scratch_.size()});
+  const double samples = this->samples();
+  const double free = std::max(samples - informed_, kPosterior.least_freedom * samples);
+  noise_ = std::clamp(
+      (std::max(left, 0.0) / begun_.rows_per_sample + kPosterior.noise_prior) / (free + 1.0),
+      kPosterior.least_noise, kPosterior.most_noise);
+}
+
+void Posterior::serve() {
+  const bool has_variances = widths_at_ == begun_.rows;
+  weights_.resize(theta_.size());
+  errors_.resize(has_variances ? theta_.size() : std::min(errors_.size(), theta_.size()));
+  centre_ = begun_.centre;
+  spread_ = begun_.spread;
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    weights_[i] = spread_ * theta_[i] / scale_[i];
+    if (has_variances) {
+      errors_[i] = spread_ * std::sqrt(variance_[i]) / scale_[i];
+    }
+  }
+  find_weights(first_);
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    std::ranges::copy(factor_.row(i), first_factor_.row(i).begin());
+    first_scale_[i] = scale_[i];
+    first_[i] *= spread_ / scale_[i];
+  }
+  served_at_ = begun_.rows;
+}
+
+void Posterior::change_features(std::size_t first, const Matrix& t) {
+  const auto m = static_cast<Eigen::Index>(gram_.size());
+  const auto terms = static_cast<Eigen::Index>(first);
+  const auto wider = static_cast<Eigen::Index>(t.columns());
+  Eigen::MatrixXd map = Eigen::MatrixXd::Zero(m, terms + wider);
+  map.topLeftCorner(terms, terms).setIdentity();
+  map.bottomRightCorner(m - terms, wider) = as_matrix(t).topRows(m - terms);
+  Eigen::MatrixXd gram(m, m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const std::span<const double> row = gram_.row(static_cast<std::size_t>(i));
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      gram(i, j) = gram(j, i) = row[static_cast<std::size_t>(j)];
+    }
+  }
+  const Eigen::MatrixXd moved = map.transpose() * gram * map;
+  const Eigen::VectorXd moment = map.transpose() * as_vector(moment_);
+  gram_.resize(static_cast<std::size_t>(moved.rows()));
+  moment_.assign(moment.begin(), moment.end());
+  for (std::size_t i = 0; i < gram_.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      gram_.row(i)[j] = moved(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  if (ready()) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(m);
+    all.head(static_cast<Eigen::Index>(weights_.size())) = as_vector(weights_);
+    const Eigen::MatrixXd square = map.transpose() * map;
+    const Eigen::VectorXd right = map.transpose() * all;
+    const Eigen::VectorXd weights = solve_symmetric(square, right);
+    weights_.assign(weights.begin(), weights.end());
+  }
+  task_ = Task::none;
+  errors_.resize(std::min(errors_.size(), first));
+  served_at_ = 0.0;
+}
+
+void Posterior::visit(Archive& archive) {
+  const auto list = [&](RoomyVector<double>& numbers) {
+    archive.list(numbers, numbers.capacity(), [&](double& one) { archive.number(one); });
+  };
+  archive.part("sums", gram_);
+  list(moment_);
+  for (double* const one : {&origin_, &rows_, &weight_, &square_, &informed_, &noise_, &widths_at_,
+                            &centre_, &spread_, &served_at_, &begun_.rows, &begun_.rows_per_sample,
+                            &begun_.centre, &begun_.spread, &begun_.square}) {
+    archive.number(*one);
+  }
+  archive.part("correlation", correlation_);
+  archive.numbers(precision_);
+  archive.choice(task_, Task::none, Task::invert);
+  archive.whole(round_, 0, kPosterior.young_rounds);
+  list(weights_);
+  archive.numbers(first_);
+  archive.numbers(first_scale_);
+  archive.part("factor of the first", first_factor_);
+  list(errors_);
+  if (task_ != Task::none) {
+    archive.part("standardised sums", sums_);
+    archive.part("factor", factor_);
+    for (RoomyVector<double>* const numbers : {&scale_, &right_, &theta_, &variance_}) {
+      list(*numbers);
+    }
+    archive.whole(next_, 0, factor_.size());
+    scratch_.resize(factor_.size());
+  }
+}
+
+}  // namespace kelpie

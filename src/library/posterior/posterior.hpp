@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/roomy_vector.hpp"
+#include "kelpie/core/archive.hpp"
+#include "kelpie/core/matrix.hpp"
+#include "kelpie/core/scaling.hpp"
+#include "kelpie/svr/resources.hpp"
+#include "learner/error_correlation.hpp"
+#include "posterior/triangle.hpp"
+
+namespace kelpie {
+
+/// The Gaussian posterior of the weights θ of features φ of one axis, y = θᵀφ(x) + noise, in
+/// information form (Bishop 2006, section 3.5; MacKay 1992):
+///
+///     A = Σ w φφᵀ,  b = Σ w y φ,   M θ = b/v,   M = A/v + diag(α_g D²),   v = σ² τ
+///
+/// A and b hold under any prior, so neither prior, noise nor scale has to be known beforehand:
+/// - Scale: D_i² = A_ii/Σw is the mean square of a feature, and the targets enter the solve as
+///   deviations from their mean, in standard deviations. The first feature is the constant 1.
+/// - Widths of the prior by evidence: α_g ← (γ_g + h)/(|Dθ|_g² + h), γ_g = n_g − α_g tr Σ_gg, for
+///   each group g of n_g features; h makes a hyperprior of the width 1.
+/// - Independent samples: τ rows make one sample (ErrorCorrelation).
+/// - Robust likelihood: Student's t with ν = 10, w = (ν + 1)/(ν + e²/d²) for the error e of the
+///   prediction before learning (Lange et al. 1989), with d² = σ² + s² and s² the variance of the
+///   prediction by the first features: where nothing is known a large error is no outlier.
+///
+/// A sample costs O(m²) for m features. solve() finds new weights in slices of bounded work: rows
+/// of Cholesky's factor, then, at every tenth more of samples, columns of its inverse for the
+/// widths. Slices leave the results unchanged. Units: of features and target, as given. Allocates
+/// in the constructor only, but for change_features().
+class Posterior {
+ public:
+  static constexpr std::size_t kMostGroups = 16;
+  static constexpr std::uint8_t kKernel = 0;          ///< The group of the kernel's functions.
+  static constexpr std::uint8_t kFlat = kMostGroups;  ///< The group of the constant.
+
+  /// For at most `capacity` features, the first `first` of which are a model of their own, too.
+  Posterior(std::size_t capacity, std::size_t first);
+
+  /// Learns a sample; no more than ten while the target is a constant. `trust`: weight by the
+  /// inputs, 0 to 1. A feature beyond those of the samples before counts as 0 there. Requires
+  /// phi[0] = 1 and finite numbers. Cost O(m²).
+  void add(std::span<const double> phi, double y, double trust);
+
+  bool wants_solve() const;  ///< A solve has not ended, or enough samples came since the last.
+
+  /// Goes on with a solve for a slice of work, within the budget; true at the end of a solve.
+  /// `group`: of each feature; kFlat for the constant.
+  bool solve(std::span<const std::uint8_t> group, Budget& budget);
+
+  bool ready() const { return !weights_.empty(); }  ///< A solve has ended.
+  /// θ, target unit per unit of the feature, for deviations from centre(); of the features at the
+  /// begin of the last solve.
+  std::span<const double> weights() const { return {weights_.data(), weights_.size()}; }
+  /// Of the first features without the others: the posterior of the leading block of M.
+  std::span<const double> first_weights() const { return first_; }
+  /// The mean of the targets at the last solve; before the first, so far.
+  double centre() const { return ready() ? centre_ : targets().mean; }
+  /// centre() + θᵀφ; the mean of the targets before the first solve. Cost O(m).
+  double value(std::span<const double> phi) const;
+  /// Standard error of a weight at the last step of the evidence; infinite before.
+  double error(std::size_t feature) const;
+  TargetScaling targets() const;  ///< Mean and standard deviation, so far; 0 and 1 without.
+  double root_mean_square(std::size_t feature) const;  ///< Of the samples so far.
+  double rows_per_sample() const { return correlation_.rows_per_sample(); }  ///< τ
+  double noise() const { return noise_ * spread_ * spread_; }  ///< σ², squared unit of the target.
+
+  /// The features from the number `first` on become others, φ' = Tᵀ φ, and the sums TᵀAT and Tᵀb.
+  /// Weights follow as far as T allows, until the next solve. Allocates. Cost O(m³).
+  void change_features(std::size_t first, const Matrix& t);
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+ private:
+  enum class Task : std::uint8_t { none, factorise, invert };
+
+  bool differ() const;  ///< Whether targets differ, beyond rounding.
+  double variance_of_first(std::span<const double> phi);
+  double samples() const { return begun_.rows / begun_.rows_per_sample; }
+  void begin_solve(std::span<const std::uint8_t> group);
+  std::size_t step(std::span<const std::uint8_t> group);
+  void find_weights(std::span<double> theta) const;
+  void find_variance(std::size_t k);
+  void update_widths(std::span<const std::uint8_t> group);
+  void update_noise();
+  void serve();
+
+  double origin_ = 0.0;         ///< the first target: sums hold differences from it
+  Triangle gram_;               ///< A
+  RoomyVector<double> moment_;  ///< b
+  double rows_ = 0.0;
+  double weight_ = 0.0;  ///< Σ w
+  double square_ = 0.0;  ///< Σ w y²
+  ErrorCorrelation correlation_;
+
+  // Prior and noise, in deviations of the target.
+  std::vector<double> precision_;  ///< α_g
+  double informed_ = 1.0;          ///< γ: the constant, and Σ γ_g
+  double noise_ = 1.0;             ///< σ²
+  double widths_at_ = 0.0;         ///< rows at the last step of the evidence
+
+  /// A solve at hand, of the sums at its begin; features and target have the unit 1.
+  struct Begun {
+    double rows = 0.0, rows_per_sample = 1.0;
+    double centre = 0.0, spread = 1.0;  ///< of the targets
+    double square = 0.0;                ///< Σ w y²
+  };
+  Task task_ = Task::none;
+  std::size_t next_ = 0;  ///< row or column
+  int round_ = 0;         ///< of a young posterior, whose widths are far off
+  Begun begun_;
+  Triangle sums_;                 ///< D⁻¹ A D⁻¹
+  Triangle factor_;               ///< of M
+  RoomyVector<double> scale_;     ///< D
+  RoomyVector<double> right_;     ///< D⁻¹ b
+  RoomyVector<double> theta_;     ///< D θ
+  RoomyVector<double> variance_;  ///< of D θ
+  RoomyVector<double> scratch_;
+
+  // In service.
+  RoomyVector<double> weights_, errors_;
+  std::vector<double> first_;           ///< of the first features alone
+  Triangle first_factor_;               ///< of their M
+  std::vector<double> first_scale_;     ///< their D
+  double centre_ = 0.0, spread_ = 1.0;  ///< of the targets
+  double served_at_ = 0.0;              ///< rows
+};
+
+}  // namespace kelpie

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace kelpie {
+
+/// Constants of the posterior, with unit and source.
+inline constexpr struct PosteriorTuning {
+  double freedom =
+      10.0;  ///< ν of Student's t; chosen on ../data/vehicles, source: Lange et al. 1989
+  double most_deviations = 4.0;     ///< of an error in τ; by hand
+  double first_rows = 10.0;         ///< rows before the first solve; by hand
+  double least_deviation = 1e-12;   ///< of targets, per mean: rounding
+  double solve_share = 0.05;        ///< rows between solves per row so far; by hand
+  double most_unsolved = 100.0;     ///< rows between solves, at most; by hand
+  double rows_per_feature = 0.125;  ///< rows between solves, at least, per feature; by hand
+  double widths_growth = 1.1;       ///< of rows between steps of the evidence; by hand
+  double young_rows = 200.0;        ///< up to which a solve has more rounds; by hand
+  int young_rounds = 3;
+  double hyperprior = 0.03;                     ///< h of groups of terms; by hand
+  double kernel_hyperprior = 0.3;               ///< h of the kernel; chosen on ../data/vehicles
+  double noise_prior = 0.1;                     ///< σ² of one sample before all others; by hand
+  double least_freedom = 0.3;                   ///< share of samples that the noise keeps; by hand
+  double least_noise = 1e-8, most_noise = 2.0;  ///< σ² per variance of the target
+  double least_precision = 1e-4, most_precision = 1e8;
+  double flat = 1e-6;     ///< precision of the constant
+  double gamma = 0.1;     ///< of κ on six inputs in deviations; chosen on ../data/vehicles
+  double novelty = 0.02;  ///< squared left-over norm of a new centre; as above
+  /// Shares of posterior, terms, svr and mean before the first losses; by hand.
+  std::array<double, 4> first_shares{0.3, 0.4, 0.15, 0.15};
+  std::array<double, 4> first_shares_of_known{0.45, 0.45, 0.05, 0.05};  ///< likewise
+  double block = 2.0;            ///< independent samples of a block of losses; by hand
+  int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand
+  std::int64_t slice = 300'000;  ///< numbers of a solve in one update; by hand
+  double outgrown = 1.5;         ///< growth of an input's deviation that moves the kernel; by hand
+  double far = 10.0;  ///< deviations of a velocity beyond which a row counts less; by hand
+} kPosterior;
+
+}  // namespace kelpie

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// `learner = posterior`, at the door: DynamicsModel.
+#include "model/posterior_axis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "allocation_count.hpp"
+#include "kelpie/core/error.hpp"
+#include "kelpie/core/random.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "kelpie/model/trained_model.hpp"
+#include "planar_drive.hpp"
+#include "support.hpp"
+
+namespace kelpie::posterior_axis_test {
+namespace {
+
+using testing::message_of;
+using testing::PlanarDrive;
+
+constexpr double kStep = 0.25;  // seconds
+
+ModelSettings settings(int buffer = 200) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.assign("learner", "posterior");
+  settings.assign("buffer", std::to_string(buffer));
+  return settings;
+}
+
+DynamicsModel new_model(int buffer = 200) {
+  const PlanarDrive names;
+  return {names.inputs, names.targets, settings(buffer)};
+}
+
+// Motion that grows, so that the units of the kernel move; with noise on the targets.
+PlanarDrive noisy_drive(std::size_t samples, double first_size = 0.1) {
+  PlanarDrive drive;
+  drive.drive(1, samples, kStep);
+  RandomStream random(2, "noise");
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double size = i < 60 ? first_size : 1.0;
+    for (double& one : drive.x[i]) {
+      one *= size;
+    }
+    drive.y[i] = PlanarDrive::accelerations(drive.x[i]);
+    for (double& one : drive.y[i]) {
+      one += 0.02 * random.normal();
+    }
+  }
+  return drive;
+}
+
+void learn(DynamicsModel& model, const PlanarDrive& drive, std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < to; ++i) {
+    model.update(drive.x[i], drive.y[i], drive.t[i]);
+  }
+}
+
+// Root mean square of the errors on another drive without noise, in that of the targets.
+template <typename Model>
+double error_elsewhere(const Model& model) {
+  PlanarDrive drive;
+  drive.drive(9, 800, kStep);
+  double wrong = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    std::array<double, 2> said{};
+    model.predict(drive.x[i], said);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      wrong += std::pow(said[axis] - drive.y[i][axis], 2);
+      size += std::pow(drive.y[i][axis], 2);
+    }
+  }
+  return std::sqrt(wrong / size);
+}
+
+TEST(PosteriorLearner, LearnsTheVehicleAndItsCoefficients) {
+  DynamicsModel model = new_model();
+  const PlanarDrive drive = noisy_drive(2000);
+  learn(model, drive, 0, drive.x.size());
+  EXPECT_TRUE(model.ready());
+  EXPECT_LT(error_elsewhere(model), 0.05);
+  double sum = 0.0;
+  for (const MemberShare& member : model.axis(0).members()) {
+    EXPECT_GE(member.share, 0.0) << member.name;
+    sum += member.share;
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  for (const Coefficient& one : model.axis(0).coefficients()) {
+    EXPECT_GT(one.error, 0.0) << one.term;
+    if (one.term == "n1*|n1|") {
+      EXPECT_NEAR(one.value, 0.01, 5.0 * one.error);
+    }
+  }
+}
+
+// Put away and taken up again at random moments, also while the kernel has new units.
+TEST(PosteriorLearner, GoesOnToTheLastBit) {
+  const PlanarDrive drive = noisy_drive(500);
+  RandomStream random(9, "stops");
+  DynamicsModel whole = new_model(60);
+  DynamicsModel broken = new_model(60);
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  for (std::size_t i = 0; i < drive.x.size() && !HasFailure(); ++i) {
+    if (random.below(i < 120 ? 4 : 20) == 0) {
+      const std::string state = broken.save();
+      EXPECT_TRUE(state == whole.save()) << "sample " << i;
+      broken = DynamicsModel::resume(new_model(60), state);
+    }
+    learn(whole, drive, i, i + 1);
+    learn(broken, drive, i, i + 1);
+    whole.predict(drive.x[(7 * i) % 500], a);
+    broken.predict(drive.x[(7 * i) % 500], b);
+    EXPECT_EQ(a, b) << "sample " << i;
+  }
+  EXPECT_TRUE(whole.save() == broken.save());
+}
+
+TEST(PosteriorLearner, AllocatesNothingWhileTheUnitsStay) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const PlanarDrive drive = noisy_drive(2000, 1.0);
+  DynamicsModel model = new_model(100);
+  learn(model, drive, 0, 1000);
+  std::array<double, 2> y{};
+  std::array<double, 8> jacobian{};
+  std::array<Prediction, 2> whole{};
+  const std::size_t before = testing::allocations;
+  for (std::size_t i = 1000; i < drive.x.size(); ++i) {
+    learn(model, drive, i, i + 1);
+    model.predict(drive.x[i], y);
+    model.predict(drive.x[i], whole);
+    model.predict_with_jacobian(drive.x[i], y, jacobian);
+  }
+  EXPECT_EQ(testing::allocations, before);
+}
+
+TEST(PosteriorLearner, TakesTheMemoryThatWasTold) {
+  KELPIE_NEEDS_ALLOCATION_COUNT();
+  const std::vector<std::string> inputs{"u", "v", "r", "th1", "th2", "th3"};
+  const std::vector<std::string> targets{"udot", "vdot", "rdot"};
+  ModelSettings three = ModelSettings::from_preset("default", 3);
+  three.assign("learner", "posterior");
+  const std::size_t told = DynamicsModel::bytes(inputs, three);
+  EXPECT_LT(told, 45'000'000U);
+  const std::size_t before = testing::allocated_bytes;
+  const DynamicsModel model(inputs, targets, three);
+  const auto taken = static_cast<double>(testing::allocated_bytes - before);
+  // Diagnosis, steady part and temporary copies beside the learners.
+  EXPECT_GT(taken, 0.9 * static_cast<double>(told));
+  EXPECT_LT(taken, 1.6 * static_cast<double>(told));
+}
+
+// A budget of one step per update is enough to learn, though later.
+TEST(PosteriorLearner, LearnsInSlices) {
+  DynamicsModel model = new_model(60);
+  const PlanarDrive drive = noisy_drive(3000);
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    model.limit(Budget(1));
+    learn(model, drive, i, i + 1);
+  }
+  EXPECT_LT(error_elsewhere(model), 0.2);
+}
+
+TEST(PosteriorLearner, HasAnExactJacobian) {
+  DynamicsModel model = new_model();
+  const PlanarDrive drive = noisy_drive(900);
+  learn(model, drive, 0, drive.x.size());
+  for (const std::size_t i : {100U, 300U, 777U}) {
+    std::array<double, 2> y{};
+    std::array<double, 8> jacobian{};
+    model.predict_with_jacobian(drive.x[i], y, jacobian);
+    for (std::size_t input = 0; input < 4; ++input) {
+      constexpr double kSmall = 1e-6;
+      std::array<double, 2> up{};
+      std::array<double, 2> down{};
+      auto x = drive.x[i];
+      x[input] += kSmall;
+      model.predict(x, up);
+      x[input] -= 2.0 * kSmall;
+      model.predict(x, down);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        EXPECT_NEAR(jacobian[4 * axis + input], (up[axis] - down[axis]) / (2.0 * kSmall), 1e-5);
+      }
+    }
+  }
+}
+
+TEST(PosteriorLearner, ATrainedModelSaysTheSame) {
+  DynamicsModel model = new_model();
+  const PlanarDrive drive = noisy_drive(900);
+  learn(model, drive, 0, drive.x.size());
+  const TrainedModel trained = model.trained();
+  const DynamicsModel copy = model;
+  for (std::size_t i = 0; i < 200; ++i) {
+    std::array<double, 2> a{};
+    std::array<double, 2> b{};
+    std::array<double, 2> c{};
+    model.predict(drive.x[i], a);
+    trained.predict(drive.x[i], b);
+    copy.predict(drive.x[i], c);
+    EXPECT_EQ(a, b);
+    EXPECT_EQ(a, c);
+  }
+}
+
+TEST(PosteriorLearner, IntervalsHoldWhatTheyPromise) {
+  DynamicsModel model = new_model();
+  const PlanarDrive drive = noisy_drive(2500);
+  int held = 0;
+  int all = 0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    learn(model, drive, i, i + 1);
+    const Prediction& said = model.decisions()[0].prediction;
+    if (i >= 500) {
+      ++all;
+      held += drive.y[i][0] >= said.lower && drive.y[i][0] <= said.upper ? 1 : 0;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(held) / all, 0.9, 0.03);
+}
+
+TEST(PosteriorLearner, BeginsWithAKnownVehicle) {
+  const auto make = [](double factor) {
+    DynamicsModel model = new_model();
+    const std::vector<Coefficient> surge{{"u", -0.2 * factor},
+                                         {"u*|u|", -0.6 * factor},
+                                         {"n1*|n1|", 0.01 * factor},
+                                         {"n2*|n2|", 0.01 * factor}};
+    const std::vector<Coefficient> yaw{{"r", -0.3 * factor},
+                                       {"r*|r|", -0.5 * factor},
+                                       {"n1*|n1|", 0.02 * factor},
+                                       {"n2*|n2|", -0.02 * factor}};
+    set_nominal(model, 0, factor == 0.0 ? std::vector<Coefficient>{} : surge);
+    set_nominal(model, 1, factor == 0.0 ? std::vector<Coefficient>{} : yaw);
+    return model;
+  };
+  const PlanarDrive drive = noisy_drive(1500, 1.0);
+  DynamicsModel known = make(1.0);
+  DynamicsModel unknown = make(0.0);
+  DynamicsModel wrong = make(-1.0);
+  for (DynamicsModel* const model : {&known, &unknown, &wrong}) {
+    learn(*model, drive, 0, 70);
+  }
+  EXPECT_LT(error_elsewhere(known), 0.6 * error_elsewhere(unknown));
+  learn(wrong, drive, 70, drive.x.size());
+  EXPECT_LT(error_elsewhere(wrong), 0.08);
+}
+
+TEST(PosteriorLearner, RefusesWhatItDoesNotDo) {
+  DynamicsModel model = new_model();
+  const PlanarDrive drive = noisy_drive(600);
+  learn(model, drive, 0, drive.x.size());
+  const TrainedModel trained = model.trained();
+  EXPECT_NE(message_of<InputError>([&] { DynamicsModel::resume_from(trained); }).find("checkpoint"),
+            std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] {
+              new_model().set_past_models(0, {StoredPastModel{}});
+            }).find("keeps no past models"),
+            std::string::npos);
+  const std::vector<std::string> given{"track", "buffer"};
+  EXPECT_EQ(settings().notes(given, false),
+            std::vector<std::string>{"setting track has no effect with learner = posterior"});
+}
+
+}  // namespace
+}  // namespace kelpie::posterior_axis_test
