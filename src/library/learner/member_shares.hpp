@@ -33,7 +33,7 @@ namespace kelpie {
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
-  static constexpr std::size_t kBlock = 20;       ///< samples
+  static constexpr std::size_t kBlock = 20;  ///< samples
   static constexpr std::size_t kMostBlock = 1000;
 
   /// Begins with these shares, of at most kMostMembers members and with the sum 1.
