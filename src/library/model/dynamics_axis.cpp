@@ -29,37 +29,19 @@ DynamicsAxis::DynamicsAxis(std::size_t inputs, const SharedSettings& shared,
                            std::optional<AxisScaling> scaling)
     : Scaled(inputs, shared, terms, std::move(scaling)),
       learner_(inputs, terms.size(), settings, committee_plan(shared, terms)),
-      interval_(shared.coverage),
-      corrected_interval_(shared.coverage) {}
+      uncertainty_(shared.coverage) {}
 
 // The way of a sample through one axis (docs/reference/architecture.md).
 Decision DynamicsAxis::update(std::span<const double> x, double y, double t) {
   Decision decision = Scaled::update(x, y, t);  // check, scale, predict, learn
-  score(decision, y, t);
+  uncertainty_.score(decision, y, t);
   return decision;
-}
-
-// The intervals around the prediction, and what the error teaches them and the disturbance.
-void DynamicsAxis::score(Decision& decision, double y, double t) {
-  if (!decision.had_model) {
-    return;
-  }
-  Prediction& said = decision.prediction;
-  said.lower = said.value - interval_.half_width();
-  said.upper = said.value + interval_.half_width();
-  interval_.observe(std::abs(y - said.value));
-  said.disturbance = disturbance_.at(said.value, t);
-  const double corrected = said.value + said.disturbance;
-  said.corrected_lower = corrected - corrected_interval_.half_width();
-  said.corrected_upper = corrected + corrected_interval_.half_width();
-  corrected_interval_.observe(std::abs(y - corrected));
-  disturbance_.observe(said.value, y, t);
 }
 
 Prediction DynamicsAxis::assess(std::span<const double> x, double ahead_s) const {
   IntervalState intervals;
   if (learner_.status().ready) {
-    intervals = {interval_.half_width(), corrected_interval_.half_width(), &disturbance_};
+    intervals = uncertainty_.intervals();
   }
   if (scaling() == nullptr) {
     return intervals.prediction(predict(x), 1.0, ahead_s);
@@ -97,9 +79,7 @@ void DynamicsAxis::refresh(Snapshot& copy) const {
   copy.scaling = *scaling();
   learner_.refresh(copy.function);
   kelpie::refresh(*copy.known, svr().champion().buffer());
-  copy.half_width = interval_.half_width();
-  copy.corrected_half_width = corrected_interval_.half_width();
-  copy.disturbance = disturbance_;
+  uncertainty_.refresh(copy);
 }
 
 Snapshot DynamicsAxis::trained(std::string name) const {
@@ -107,7 +87,7 @@ Snapshot DynamicsAxis::trained(std::string name) const {
           .scaling = *scaling(),
           .function = learner_.function_mix(),
           .kkt_gap = learner_.status().kkt_gap,
-          .half_width = interval_.half_width(),
+          .half_width = uncertainty_.half_width(),
           .known = known_places(svr().champion().buffer())};
 }
 
@@ -210,9 +190,7 @@ void DynamicsAxis::visit(Archive& archive) {
   Scaled::visit(archive);
   archive.list(expected_, terms().size() + 1, [&](double& one) { archive.number(one); });
   archive.part("learner", learner_);
-  archive.part("interval", interval_);
-  archive.part("disturbance", disturbance_);
-  archive.part("interval with disturbance", corrected_interval_);
+  uncertainty_.visit(archive);
   if (archive.loading() && scaling() != nullptr) {
     awaited_.clear();  // they are among the learner's
   }

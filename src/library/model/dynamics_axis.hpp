@@ -14,6 +14,7 @@
 #include "model/command_gain.hpp"
 #include "model/scaled.hpp"
 #include "model/snapshot.hpp"
+#include "model/uncertainty.hpp"
 
 namespace kelpie {
 
@@ -87,13 +88,12 @@ class DynamicsAxis final : public Scaled {
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
-  const Committee& committee() const { return learner_; }          ///< On scaled samples.
-  const AdaptiveSvr& svr() const { return learner_.learner(); }    ///< The paper's learner.
-  const Disturbance& disturbance() const { return disturbance_; }  ///< In the target's unit.
+  const Committee& committee() const { return learner_; }        ///< On scaled samples.
+  const AdaptiveSvr& svr() const { return learner_.learner(); }  ///< The paper's learner.
+  const Disturbance& disturbance() const { return uncertainty_.disturbance(); }
 
  private:
   ShortVector<kMostTerms + 1> scaled_weights(std::span<const double> coefficients) const;
-  void score(Decision& decision, double y, double t);
   Committee& learner() override { return learner_; }
   const Committee& learner() const override { return learner_; }
   void scale_found() override;
@@ -102,9 +102,7 @@ class DynamicsAxis final : public Scaled {
   Committee learner_;
   std::vector<StoredPastModel> awaited_;  ///< for the learner, until the scale is known
   std::vector<double> expected_;          ///< coefficients, until the scale is known
-  ConformalInterval interval_;            ///< in the target's own unit
-  Disturbance disturbance_;
-  ConformalInterval corrected_interval_;  ///< around predictions with the disturbance
+  Uncertainty uncertainty_;
 };
 
 /// The committee of these settings.

@@ -15,8 +15,6 @@
 namespace kelpie {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 SvrFunction empty_function(const Features& features) {
   const KernelBasis& basis = features.basis();
   return {
@@ -52,8 +50,7 @@ PosteriorAxis::PosteriorAxis(std::size_t inputs, const SharedSettings& shared,
       known_{SampleStore(inputs, centres_of(settings)),
              KernelDensity(inputs, centres_of(settings),
                            KernelDensity::scott(inputs, centres_of(settings)))},
-      interval_(shared.coverage),
-      corrected_interval_(shared.coverage) {
+      uncertainty_(shared.coverage) {
   settings.validate();
   beta_.reserve(features_.basis().centres().capacity());
 }
@@ -72,7 +69,7 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
             .had_model = posterior_.ready()};
   }
   Decision decision{.prediction = {.value = predict(x)}, .had_model = posterior_.ready()};
-  score(decision, y, t);
+  uncertainty_.score(decision, y, t);
   if (has_scale_) {
     mixture_.update(as_span(scale_sample(scaling_, terms(), x)), scaling_.target.apply(y), t,
                     block_length());
@@ -86,23 +83,6 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   }
   ++tally_.accepted;
   return decision;
-}
-
-// The intervals around the prediction, and what the error teaches them and the disturbance.
-void PosteriorAxis::score(Decision& decision, double y, double t) {
-  if (!decision.had_model) {
-    return;
-  }
-  Prediction& said = decision.prediction;
-  said.lower = said.value - interval_.half_width();
-  said.upper = said.value + interval_.half_width();
-  interval_.observe(std::abs(y - said.value));
-  said.disturbance = disturbance_.at(said.value, t);
-  const double corrected = said.value + said.disturbance;
-  said.corrected_lower = corrected - corrected_interval_.half_width();
-  said.corrected_upper = corrected + corrected_interval_.half_width();
-  corrected_interval_.observe(std::abs(y - corrected));
-  disturbance_.observe(said.value, y, t);
 }
 
 void PosteriorAxis::learn(std::span<const double> x, double y) {
@@ -196,10 +176,6 @@ std::size_t PosteriorAxis::block_length() const {
   return std::clamp(static_cast<std::size_t>(rows), MemberShares::kBlock, MemberShares::kMostBlock);
 }
 
-IntervalState PosteriorAxis::intervals() const {
-  return {interval_.half_width(), corrected_interval_.half_width(), &disturbance_};
-}
-
 double PosteriorAxis::predict(std::span<const double> x) const {
   return has_scale_ ? ServedAxis<FunctionMix>{scaling_, terms(), mixture_.function()}.predict(x)
                     : posterior_.centre();
@@ -210,8 +186,8 @@ Prediction PosteriorAxis::assess(std::span<const double> x, double ahead_s) cons
     return {.value = predict(x), .novelty = 1.0};
   }
   const auto novelty = [&](std::span<const double> z) { return known_.novelty(z); };
-  return ServedAxis<FunctionMix>{scaling_, terms(), mixture_.function()}.assess(x, intervals(),
-                                                                                novelty, ahead_s);
+  return ServedAxis<FunctionMix>{scaling_, terms(), mixture_.function()}.assess(
+      x, uncertainty_.intervals(), novelty, ahead_s);
 }
 
 double PosteriorAxis::predict_with_gradient(std::span<const double> x,
@@ -241,13 +217,9 @@ std::vector<Coefficient> PosteriorAxis::coefficients() const {
 }
 
 Snapshot PosteriorAxis::snapshot() const {
-  return {.name = {},
-          .scaling = scaling_,
-          .function = mixture_.function(),
-          .half_width = interval_.half_width(),
-          .known = known_,
-          .corrected_half_width = corrected_interval_.half_width(),
-          .disturbance = disturbance_};
+  Snapshot copy{.name = {}, .scaling = scaling_, .function = mixture_.function(), .known = known_};
+  uncertainty_.refresh(copy);
+  return copy;
 }
 
 void PosteriorAxis::refresh(Snapshot& copy) const {
@@ -261,17 +233,15 @@ void PosteriorAxis::refresh(Snapshot& copy) const {
   }
   copy.known->samples.assign(known_.samples);
   copy.known->density.assume(known_.density.sums());
-  copy.half_width = interval_.half_width();
-  copy.corrected_half_width = corrected_interval_.half_width();
-  copy.disturbance = disturbance_;
+  uncertainty_.refresh(copy);
 }
 
 Snapshot PosteriorAxis::trained(std::string name) const {
-  Snapshot copy = snapshot();
-  copy.name = std::move(name);
-  copy.corrected_half_width = kInfinite;
-  copy.disturbance.reset();
-  return copy;
+  return {.name = std::move(name),
+          .scaling = scaling_,
+          .function = mixture_.function(),
+          .half_width = uncertainty_.half_width(),
+          .known = known_};
 }
 
 void PosteriorAxis::expect_vehicle(std::vector<double> coefficients) {
@@ -297,9 +267,7 @@ void PosteriorAxis::visit(Archive& archive) {
   archive.part("features", features_);
   archive.part("posterior", posterior_);
   archive.list(prior_, terms().size() + 1, [&](double& one) { archive.number(one); });
-  archive.part("interval", interval_);
-  archive.part("disturbance", disturbance_);
-  archive.part("interval with disturbance", corrected_interval_);
+  uncertainty_.visit(archive);
   archive.flag(trusted_last_);
   archive.part("tally", tally_);
   if (archive.loading()) {

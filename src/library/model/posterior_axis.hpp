@@ -9,9 +9,8 @@
 
 #include "core/roomy_vector.hpp"
 #include "kelpie/model/settings.hpp"
-#include "learner/conformal.hpp"
-#include "learner/disturbance.hpp"
 #include "model/model_axis.hpp"
+#include "model/uncertainty.hpp"
 #include "posterior/features.hpp"
 #include "posterior/mixture.hpp"
 #include "posterior/posterior.hpp"
@@ -83,8 +82,6 @@ class PosteriorAxis final : public ModelAxis {
   void serve();
   std::size_t block_length() const;
   void know_centres();
-  void score(Decision& decision, double y, double t);
-  IntervalState intervals() const;
 
   Features features_;
   Posterior posterior_;        ///< of the targets less what was expected()
@@ -93,9 +90,7 @@ class PosteriorAxis final : public ModelAxis {
   bool has_scale_ = false;     ///< after the first solve
   Mixture mixture_;            ///< in service
   KnownPlaces known_;          ///< the centres, for novelty
-  ConformalInterval interval_;
-  ConformalInterval corrected_interval_;
-  Disturbance disturbance_;
+  Uncertainty uncertainty_;
   bool trusted_last_ = true;
   Tally tally_;
   Budget budget_;
