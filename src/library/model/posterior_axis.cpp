@@ -74,7 +74,7 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
     mixture_.update(as_span(scale_sample(scaling_, terms(), x)), scaling_.target.apply(y), t,
                     block_length());
   }
-  learn(x, y);
+  learn(x, y, t);
   if (posterior_.wants_solve() && posterior_.solve(features_.groups(), budget_)) {
     const bool fits =
         has_scale_ && posterior_.targets().scale < kPosterior.outgrown * scaling_.target.scale;
@@ -85,11 +85,20 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   return decision;
 }
 
-void PosteriorAxis::learn(std::span<const double> x, double y) {
+// Garbage ends; velocities that stay far away are those of a vehicle that has set off.
+double PosteriorAxis::trust(std::span<const double> x, double t) {
   const double trust = features_.trust(x);
+  const double step = std::clamp(t - last_s_, 0.0, kPosterior.longest_step_s);
+  last_s_ = t;
+  far_s_ = trust < 1.0 ? far_s_ + step : std::max(0.0, far_s_ - step);
+  return far_s_ > kPosterior.garbage_s ? 1.0 : trust;
+}
+
+void PosteriorAxis::learn(std::span<const double> x, double y, double t) {
+  const double trust = this->trust(x, t);
   trusted_last_ = trust == 1.0;
-  if (const std::optional<Matrix> t = features_.observe(x, trust)) {
-    posterior_.change_features(features_.terms_end(), *t);
+  if (const std::optional<Matrix> map = features_.observe(x, trust)) {
+    posterior_.change_features(features_.terms_end(), *map);
     known_.samples.clear();
     known_.density.clear();
     if (posterior_.ready()) {
@@ -268,6 +277,8 @@ void PosteriorAxis::visit(Archive& archive) {
   archive.part("posterior", posterior_);
   archive.list(prior_, terms().size() + 1, [&](double& one) { archive.number(one); });
   uncertainty_.visit(archive);
+  archive.number(last_s_);
+  archive.number(far_s_);
   archive.flag(trusted_last_);
   archive.part("tally", tally_);
   if (archive.loading()) {

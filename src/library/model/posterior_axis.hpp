@@ -76,7 +76,8 @@ class PosteriorAxis final : public ModelAxis {
 
   static std::size_t centres_of(const OnlineSvrSettings& settings);
   double expected(std::span<const double> x) const;
-  void learn(std::span<const double> x, double y);
+  double trust(std::span<const double> x, double t);
+  void learn(std::span<const double> x, double y, double t);
   void change_scale();
   TermWeights scaled(std::span<const double> theta) const;
   void serve();
@@ -91,6 +92,8 @@ class PosteriorAxis final : public ModelAxis {
   Mixture mixture_;            ///< in service
   KnownPlaces known_;          ///< the centres, for novelty
   Uncertainty uncertainty_;
+  double last_s_ = 0.0;  ///< time of the last sample [s]
+  double far_s_ = 0.0;   ///< for which velocities have been far away, less those that were not [s]
   bool trusted_last_ = true;
   Tally tally_;
   Budget budget_;

@@ -36,7 +36,9 @@ inline constexpr struct PosteriorTuning {
   int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand
   std::int64_t slice = 300'000;  ///< numbers of a solve in one update; by hand
   double outgrown = 1.5;         ///< growth of an input's deviation that moves the kernel; by hand
-  double far = 10.0;  ///< deviations of a velocity beyond which a row counts less; by hand
+  double far = 10.0;        ///< deviations of a velocity beyond which a row counts less; by hand
+  double garbage_s = 36.0;  ///< longest garbage of a sensor [s], as for the committee's guard
+  double longest_step_s = 2.0;  ///< of two rows without a gap [s]; by hand
 } kPosterior;
 
 }  // namespace kelpie

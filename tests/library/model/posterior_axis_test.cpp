@@ -226,6 +226,32 @@ TEST(PosteriorLearner, IntervalsHoldWhatTheyPromise) {
   EXPECT_NEAR(static_cast<double>(held) / all, 0.9, 0.03);
 }
 
+// Velocities far beyond those of the rest are those of the vehicle, with and without noise at rest.
+TEST(PosteriorLearner, SetsOffAfterARest) {
+  constexpr int kRest = 200;
+  for (const double noise : {0.0, 1e-3}) {
+    RandomStream random(3, "rest");
+    DynamicsModel model = new_model();
+    for (int i = 0; i < kRest; ++i) {
+      std::array<double, 4> x{};
+      std::array<double, 2> y{};
+      for (double& one : x) {
+        one = noise * random.normal();
+      }
+      for (double& one : y) {
+        one = noise * random.normal();
+      }
+      model.update(x, y, kStep * i);
+    }
+    PlanarDrive drive = noisy_drive(1500, 1.0);
+    for (double& t : drive.t) {
+      t += kRest * kStep;
+    }
+    learn(model, drive, 0, drive.x.size());
+    EXPECT_LT(error_elsewhere(model), 0.25) << noise;
+  }
+}
+
 TEST(PosteriorLearner, BeginsWithAKnownVehicle) {
   const auto make = [](double factor) {
     DynamicsModel model = new_model();
