@@ -42,7 +42,8 @@ PosteriorAxis::PosteriorAxis(std::size_t inputs, const SharedSettings& shared,
                              const OnlineSvrSettings& settings, const TermSet& terms,
                              std::span<const std::size_t> states)
     : features_(inputs, terms, states, centres_of(settings)),
-      posterior_(features_.capacity(), features_.terms_end()),
+      posterior_(features_.capacity(), features_.terms_end(), Likelihood::student),
+      lenient_(features_.capacity(), features_.terms_end(), Likelihood::huber),
       scaling_{.input = features_.units(),
                .target = {},
                .term_scale = std::vector<double>(terms.size(), 1.0)},
@@ -75,7 +76,8 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
                     block_length());
   }
   learn(x, y, t);
-  if (posterior_.wants_solve() && posterior_.solve(features_.groups(), budget_)) {
+  const bool is_new = solve(posterior_);
+  if (solve(lenient_) || is_new) {
     const bool fits =
         has_scale_ && posterior_.targets().scale < kPosterior.outgrown * scaling_.target.scale;
     fits ? serve() : change_scale();
@@ -83,6 +85,12 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   }
   ++tally_.accepted;
   return decision;
+}
+
+// True at the end of a solve that makes a model.
+bool PosteriorAxis::solve(Posterior& posterior) {
+  return posterior.wants_solve() && posterior.solve(features_.groups(), budget_) &&
+         posterior_.ready();
 }
 
 // Garbage ends; velocities that stay far away are those of a vehicle that has set off.
@@ -99,6 +107,7 @@ void PosteriorAxis::learn(std::span<const double> x, double y, double t) {
   trusted_last_ = trust == 1.0;
   if (const std::optional<Matrix> map = features_.observe(x, trust)) {
     posterior_.change_features(features_.terms_end(), *map);
+    lenient_.change_features(features_.terms_end(), *map);
     known_.samples.clear();
     known_.density.clear();
     if (posterior_.ready()) {
@@ -106,7 +115,9 @@ void PosteriorAxis::learn(std::span<const double> x, double y, double t) {
     }
   }
   const std::span<const double> phi = features_.learn(x);
-  posterior_.add(phi, y - expected(x), trust);
+  const double left = y - expected(x);
+  posterior_.add(phi, left, trust);
+  lenient_.add(phi, left, trust);
   know_centres();
 }
 
@@ -142,30 +153,35 @@ void PosteriorAxis::change_scale() {
 }
 
 // Weights of the terms by scaled terms, the last number the bias.
-PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta) const {
+PosteriorAxis::TermWeights PosteriorAxis::scaled(const Posterior& posterior,
+                                                 std::span<const double> theta) const {
   TermWeights weights(theta.size());
   const auto whole = [&](std::size_t k) { return theta[k] + (prior_.empty() ? 0.0 : prior_[k]); };
   for (std::size_t k = 1; k < theta.size(); ++k) {
     weights[k - 1] = whole(k) * scaling_.term_scale[k - 1] / scaling_.target.scale;
   }
-  weights[theta.size() - 1] = scaling_.target.apply(posterior_.centre() + whole(0));
+  weights[theta.size() - 1] = scaling_.target.apply(posterior.centre() + whole(0));
   return weights;
 }
 
 // The posterior's mean as a function of scaled kernels and terms.
 void PosteriorAxis::serve() {
-  const std::span<const double> theta = posterior_.weights();
-  const std::size_t first = features_.terms_end();
-  const double scale = scaling_.target.scale;
-  beta_.assign(features_.basis().size(), 0.0);  // centres that came since have no weight yet
-  std::ranges::transform(theta.subspan(first), beta_.begin(),
-                         [&](double weight) { return weight / scale; });
-  features_.basis().to_kernel(beta_);
-  mixture_.assign_posterior(features_.basis().centres(), beta_,
-                            as_span(scaled(theta.first(first))));
-  mixture_.assign_terms(as_span(scaled(posterior_.first_weights())));
+  serve(Likelihood::student, posterior_);
+  serve(Likelihood::huber, lenient_.ready() ? lenient_ : posterior_);
+  mixture_.assign_terms(as_span(scaled(posterior_, posterior_.first_weights())));
   const double mean = scaling_.target.apply(posterior_.centre());
   mixture_.assign_mean({&mean, 1});
+}
+
+void PosteriorAxis::serve(Likelihood likelihood, const Posterior& posterior) {
+  const std::span<const double> theta = posterior.weights();
+  const std::size_t first = features_.terms_end();
+  beta_.assign(features_.basis().size(), 0.0);  // centres that came since have no weight yet
+  std::ranges::transform(theta.subspan(first), beta_.begin(),
+                         [&](double weight) { return weight / scaling_.target.scale; });
+  features_.basis().to_kernel(beta_);
+  mixture_.assign_posterior(likelihood, features_.basis().centres(), beta_,
+                            as_span(scaled(posterior, theta.first(first))));
 }
 
 // Novelty compares places with all centres.
@@ -275,6 +291,7 @@ const DynamicsAxis& PosteriorAxis::dynamics_axis() const {
 void PosteriorAxis::visit(Archive& archive) {
   archive.part("features", features_);
   archive.part("posterior", posterior_);
+  archive.part("lenient", lenient_);
   archive.list(prior_, terms().size() + 1, [&](double& one) { archive.number(one); });
   uncertainty_.visit(archive);
   archive.number(last_s_);
@@ -299,7 +316,7 @@ std::size_t PosteriorAxis::bytes(std::size_t inputs, std::size_t terms,
   const std::size_t centres = centres_of(settings);
   const std::size_t m = centres + terms + 1;
   return sizeof(PosteriorAxis) +
-         (3 * m * (m + 1) / 2 + centres * (centres + 1) / 2 + 10 * m) * sizeof(double) +
+         (6 * m * (m + 1) / 2 + centres * (centres + 1) / 2 + 10 * m) * sizeof(double) +
          2 * SampleStore::bytes(inputs, centres) + KernelDensity::bytes(inputs, centres) +
          Mixture::bytes(inputs, terms, centres, settings);
 }

@@ -41,7 +41,9 @@ class PosteriorAxis final : public ModelAxis {
     budget_ = budget;
     mixture_.limit(budget);
   }
-  bool unfinished() const override { return posterior_.wants_solve() || mixture_.unfinished(); }
+  bool unfinished() const override {
+    return posterior_.wants_solve() || lenient_.wants_solve() || mixture_.unfinished();
+  }
   bool trusted_last() const override { return trusted_last_; }
 
   double predict(std::span<const double> x) const override;
@@ -79,13 +81,16 @@ class PosteriorAxis final : public ModelAxis {
   double trust(std::span<const double> x, double t);
   void learn(std::span<const double> x, double y, double t);
   void change_scale();
-  TermWeights scaled(std::span<const double> theta) const;
+  TermWeights scaled(const Posterior& posterior, std::span<const double> theta) const;
+  void serve(Likelihood likelihood, const Posterior& posterior);
+  bool solve(Posterior& posterior);
   void serve();
   std::size_t block_length() const;
   void know_centres();
 
   Features features_;
   Posterior posterior_;        ///< of the targets less what was expected()
+  Posterior lenient_;          ///< the same of Huber's likelihood
   std::vector<double> prior_;  ///< the prior's mean of the first features; empty: 0
   AxisScaling scaling_;        ///< of the mixture
   bool has_scale_ = false;     ///< after the first solve

@@ -13,8 +13,9 @@
 
 namespace kelpie {
 
-Posterior::Posterior(std::size_t capacity, std::size_t first)
-    : gram_(capacity),
+Posterior::Posterior(std::size_t capacity, std::size_t first, Likelihood likelihood)
+    : likelihood_(likelihood),
+      gram_(capacity),
       precision_(kMostGroups, 1.0),
       sums_(capacity),
       factor_(capacity),
@@ -37,7 +38,9 @@ void Posterior::add(std::span<const double> phi, double y, double trust) {
     const double error = (y - value(phi)) / (spread_ * std::sqrt(noise_));
     correlation_.add(std::clamp(error, -kPosterior.most_deviations, kPosterior.most_deviations));
     const double square = error * error * noise_ / (noise_ + variance_of_first(phi));
-    weight *= (kPosterior.freedom + 1.0) / (kPosterior.freedom + square);
+    weight *= likelihood_ == Likelihood::student
+                  ? (kPosterior.freedom + 1.0) / (kPosterior.freedom + square)
+                  : std::min(1.0, kPosterior.huber / std::sqrt(square));
   }
   origin_ = rows_ == 0.0 ? y : origin_;
   y -= origin_;

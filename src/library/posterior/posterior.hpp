@@ -16,6 +16,12 @@
 
 namespace kelpie {
 
+/// What a large error costs a sample.
+enum class Likelihood : std::uint8_t {
+  student,  ///< nearly all of its weight, as of an outlier
+  huber,    ///< its influence stays bounded, as of a rare manoeuvre
+};
+
 /// The Gaussian posterior of the weights θ of features φ of one axis, y = θᵀφ(x) + noise, in
 /// information form (Bishop 2006, section 3.5; MacKay 1992):
 ///
@@ -27,9 +33,10 @@ namespace kelpie {
 /// - Widths of the prior by evidence: α_g ← (γ_g + h)/(|Dθ|_g² + h), γ_g = n_g − α_g tr Σ_gg, for
 ///   each group g of n_g features; h makes a hyperprior of the width 1.
 /// - Independent samples: τ rows make one sample (ErrorCorrelation).
-/// - Robust likelihood: Student's t with ν = 10, w = (ν + 1)/(ν + e²/d²) for the error e of the
-///   prediction before learning (Lange et al. 1989), with d² = σ² + s² and s² the variance of the
-///   prediction by the first features: where nothing is known a large error is no outlier.
+/// - Robust likelihood (Likelihood), by the error e of the prediction before learning and
+///   d² = σ² + s², with s² the variance of the prediction by the first features, for where nothing
+///   is known a large error is no outlier: Student's t with ν = 10, w = (ν + 1)/(ν + e²/d²) (Lange
+///   et al. 1989), or Huber's w = 3d/|e| beyond 3d (Huber 1981).
 ///
 /// A sample costs O(m²) for m features. solve() finds new weights in slices of bounded work: rows
 /// of Cholesky's factor, then, at every tenth more of samples, columns of its inverse for the
@@ -42,7 +49,7 @@ class Posterior {
   static constexpr std::uint8_t kFlat = kMostGroups;  ///< The group of the constant.
 
   /// For at most `capacity` features, the first `first` of which are a model of their own, too.
-  Posterior(std::size_t capacity, std::size_t first);
+  Posterior(std::size_t capacity, std::size_t first, Likelihood likelihood);
 
   /// Learns a sample; no more than ten while the target is a constant. `trust`: weight by the
   /// inputs, 0 to 1. A feature beyond those of the samples before counts as 0 there. Requires
@@ -92,6 +99,7 @@ class Posterior {
   void update_noise();
   void serve();
 
+  Likelihood likelihood_;
   double origin_ = 0.0;         ///< the first target: sums hold differences from it
   Triangle gram_;               ///< A
   RoomyVector<double> moment_;  ///< b

@@ -9,6 +9,7 @@ namespace kelpie {
 
 /// Constants of the posterior, with unit and source.
 inline constexpr struct PosteriorTuning {
+  double huber = 3.0;  ///< deviations of an error that bound the influence of a sample; by hand
   double freedom =
       10.0;  ///< ν of Student's t; chosen on ../data/vehicles, source: Lange et al. 1989
   double most_deviations = 4.0;     ///< of an error in τ; by hand
@@ -30,8 +31,8 @@ inline constexpr struct PosteriorTuning {
   double gamma = 0.1;     ///< of κ on six inputs in deviations; chosen on ../data/vehicles
   double novelty = 0.02;  ///< squared left-over norm of a new centre; as above
   /// Shares of posterior, terms, svr and mean before the first losses; by hand.
-  std::array<double, 4> first_shares{0.3, 0.4, 0.15, 0.15};
-  std::array<double, 4> first_shares_of_known{0.45, 0.45, 0.05, 0.05};  ///< likewise
+  std::array<double, 5> first_shares{0.2, 0.1, 0.4, 0.15, 0.15};
+  std::array<double, 5> first_shares_of_known{0.3, 0.15, 0.45, 0.05, 0.05};  ///< likewise
   double block = 2.0;            ///< independent samples of a block of losses; by hand
   int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand
   std::int64_t slice = 300'000;  ///< numbers of a solve in one update; by hand

@@ -57,7 +57,7 @@ void learn(Posterior& posterior, const Row& row) {
 }
 
 Posterior learned(const std::vector<Row>& rows, std::size_t first = 4) {
-  Posterior posterior(kFeatures, first);
+  Posterior posterior(kFeatures, first, Likelihood::student);
   for (const Row& row : rows) {
     learn(posterior, row);
   }
@@ -106,7 +106,7 @@ TEST(Posterior, PredictsBetterThanLeastSquaresOfFewSamples) {
 
 // At rest a target may be a constant to the last bit; the vehicle learns when it sets off.
 TEST(Posterior, LearnsAfterAConstantTarget) {
-  Posterior posterior(kFeatures, 4);
+  Posterior posterior(kFeatures, 4, Likelihood::student);
   for (int i = 0; i < 100; ++i) {
     learn(posterior, {{1, 0, 0, 0, 0, 0, 0}, 0.7});
   }
@@ -151,7 +151,7 @@ TEST(Posterior, OutliersHardlyMoveIt) {
 // A command that steps once in a hundred rows, far beyond its usual size, is no outlier.
 TEST(Posterior, LearnsRareManoeuvres) {
   RandomStream random(11, "rare");
-  Posterior posterior(kFeatures, 4);
+  Posterior posterior(kFeatures, 4, Likelihood::student);
   for (int i = 0; i < 2000; ++i) {
     Row row{{1.0, random.normal(), i % 100 == 99 ? 30.0 : 0.1 * random.normal(), 0, 0, 0, 0}, 0.0};
     row.y = row.phi[1] + 2.0 * row.phi[2] + 0.1 * random.normal();
@@ -182,8 +182,8 @@ TEST(Posterior, SlicesLeaveTheResultsUnchanged) {
 // Neighbours in time say the same: errors that go on for ten rows are one sample's.
 TEST(Posterior, RowsAlikeAreNoFurtherEvidence) {
   const std::vector<Row> data = rows(6, 300, 0.5);
-  Posterior once(kFeatures, 4);
-  Posterior repeated(kFeatures, 4);
+  Posterior once(kFeatures, 4, Likelihood::student);
+  Posterior repeated(kFeatures, 4, Likelihood::student);
   for (const Row& row : data) {
     learn(once, row);
     for (int i = 0; i < 10; ++i) {
@@ -225,7 +225,7 @@ TEST(Posterior, FollowsAChangeOfItsFeatures) {
   const Posterior old = learned(data);
   Posterior moved = old;
   moved.change_features(4, t);
-  Posterior anew(kFeatures, 4);
+  Posterior anew(kFeatures, 4, Likelihood::student);
   for (const Row& row : data) {
     learn(anew, {mapped(row.phi), row.y});
   }
@@ -242,7 +242,7 @@ TEST(Posterior, FollowsAChangeOfItsFeatures) {
 
 TEST(Posterior, GoesOnFromASavedState) {
   const std::vector<Row> data = rows(9, 250, 0.3);
-  const auto make = [] { return Posterior(kFeatures, 4); };
+  const auto make = [] { return Posterior(kFeatures, 4, Likelihood::student); };
   testing::expect_same_life(
       make, data.size(), [](std::size_t i) { return i % 13 == 5; },
       [&](Posterior& posterior, std::size_t i) {
