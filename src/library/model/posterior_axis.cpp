@@ -78,8 +78,8 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   learn(x, y, t);
   const bool is_new = solve(posterior_);
   if (solve(lenient_) || is_new) {
-    const bool fits =
-        has_scale_ && posterior_.targets().scale < kPosterior.outgrown * scaling_.target.scale;
+    const bool fits = has_scale_ && posterior_.targets(prior_).scale <
+                                        kPosterior.outgrown * scaling_.target.scale;
     fits ? serve() : change_scale();
     decision.published = true;
   }
@@ -135,7 +135,7 @@ double PosteriorAxis::expected(std::span<const double> x) const {
 // Inputs in the units of the kernel; terms and target by their sizes so far.
 void PosteriorAxis::change_scale() {
   AxisScaling next{.input = features_.units(),
-                   .target = posterior_.targets(),
+                   .target = posterior_.targets(prior_),
                    .term_scale = std::vector<double>(terms().size(), 1.0)};
   for (std::size_t k = 0; k < terms().size(); ++k) {
     const double size = posterior_.root_mean_square(k + 1);
@@ -156,11 +156,10 @@ void PosteriorAxis::change_scale() {
 PosteriorAxis::TermWeights PosteriorAxis::scaled(const Posterior& posterior,
                                                  std::span<const double> theta) const {
   TermWeights weights(theta.size());
-  const auto whole = [&](std::size_t k) { return theta[k] + (prior_.empty() ? 0.0 : prior_[k]); };
   for (std::size_t k = 1; k < theta.size(); ++k) {
-    weights[k - 1] = whole(k) * scaling_.term_scale[k - 1] / scaling_.target.scale;
+    weights[k - 1] = (theta[k] + known(k)) * scaling_.term_scale[k - 1] / scaling_.target.scale;
   }
-  weights[theta.size() - 1] = scaling_.target.apply(posterior.centre() + whole(0));
+  weights[theta.size() - 1] = scaling_.target.apply(posterior.centre() + theta[0] + known(0));
   return weights;
 }
 
@@ -169,7 +168,8 @@ void PosteriorAxis::serve() {
   serve(Likelihood::student, posterior_);
   serve(Likelihood::huber, lenient_.ready() ? lenient_ : posterior_);
   mixture_.assign_terms(as_span(scaled(posterior_, posterior_.first_weights())));
-  const double mean = scaling_.target.apply(posterior_.centre());
+  const double of_known = posterior_.targets(prior_).mean - posterior_.targets().mean;
+  const double mean = scaling_.target.apply(posterior_.centre() + of_known);
   mixture_.assign_mean({&mean, 1});
 }
 
@@ -203,7 +203,7 @@ std::size_t PosteriorAxis::block_length() const {
 
 double PosteriorAxis::predict(std::span<const double> x) const {
   return has_scale_ ? ServedAxis<FunctionMix>{scaling_, terms(), mixture_.function()}.predict(x)
-                    : posterior_.centre();
+                    : posterior_.centre() + expected(x);
 }
 
 Prediction PosteriorAxis::assess(std::span<const double> x, double ahead_s) const {
@@ -235,7 +235,7 @@ std::vector<Coefficient> PosteriorAxis::coefficients() const {
   std::vector<Coefficient> list;
   for (std::size_t k = 0; posterior_.ready() && k < terms().size(); ++k) {
     list.push_back({.term = terms().text(k),
-                    .value = posterior_.weights()[k + 1] + (prior_.empty() ? 0.0 : prior_[k + 1]),
+                    .value = posterior_.weights()[k + 1] + known(k + 1),
                     .error = posterior_.error(k + 1)});
   }
   return list;

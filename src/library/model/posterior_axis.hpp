@@ -77,6 +77,7 @@ class PosteriorAxis final : public ModelAxis {
   using TermWeights = ShortVector<kMostTerms + 1>;
 
   static std::size_t centres_of(const OnlineSvrSettings& settings);
+  double known(std::size_t feature) const { return prior_.empty() ? 0.0 : prior_[feature]; }
   double expected(std::span<const double> x) const;
   double trust(std::span<const double> x, double t);
   void learn(std::span<const double> x, double y, double t);

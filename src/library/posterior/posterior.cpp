@@ -72,12 +72,20 @@ double Posterior::error(std::size_t feature) const {
   return feature < errors_.size() ? errors_[feature] : std::numeric_limits<double>::infinity();
 }
 
-TargetScaling Posterior::targets() const {
+TargetScaling Posterior::targets(std::span<const double> known) const {
   if (weight_ == 0.0) {
     return {};
   }
-  const double mean = moment_[0] / weight_;
-  const double variance = square_ / weight_ - mean * mean;
+  double sum = moment_[0];
+  double square = square_;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const std::span<const double> row = gram_.row(i);
+    sum += known[i] * row[0];
+    square +=
+        known[i] * (2.0 * moment_[i] + 2.0 * dot(row.first(i), known.first(i)) + known[i] * row[i]);
+  }
+  const double mean = sum / weight_;
+  const double variance = square / weight_ - mean * mean;
   return {origin_ + mean, std::sqrt(std::max(variance, std::numeric_limits<double>::min()))};
 }
 

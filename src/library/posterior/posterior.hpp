@@ -74,7 +74,9 @@ class Posterior {
   double value(std::span<const double> phi) const;
   /// Standard error of a weight at the last step of the evidence; infinite before.
   double error(std::size_t feature) const;
-  TargetScaling targets() const;  ///< Mean and standard deviation, so far; 0 and 1 without.
+  /// Mean and standard deviation of the targets so far, plus `known` · φ of the first features; 0
+  /// and 1 without samples. Cost O(known.size()²).
+  TargetScaling targets(std::span<const double> known = {}) const;
   double root_mean_square(std::size_t feature) const;  ///< Of the samples so far.
   double rows_per_sample() const { return correlation_.rows_per_sample(); }  ///< τ
   double noise() const { return noise_ * spread_ * spread_; }  ///< σ², squared unit of the target.

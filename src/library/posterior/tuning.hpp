@@ -9,9 +9,8 @@ namespace kelpie {
 
 /// Constants of the posterior, with unit and source.
 inline constexpr struct PosteriorTuning {
-  double huber = 3.0;  ///< deviations of an error that bound the influence of a sample; by hand
-  double freedom =
-      10.0;  ///< ν of Student's t; chosen on ../data/vehicles, source: Lange et al. 1989
+  double huber = 3.0;     ///< deviations of an error that bound the influence of a sample; by hand
+  double freedom = 10.0;  ///< ν of Student's t (Lange et al. 1989); chosen on ../data/vehicles
   double most_deviations = 4.0;     ///< of an error in τ; by hand
   double first_rows = 10.0;         ///< rows before the first solve; by hand
   double least_deviation = 1e-12;   ///< of targets, per mean: rounding

@@ -272,7 +272,12 @@ TEST(PosteriorLearner, BeginsWithAKnownVehicle) {
   DynamicsModel unknown = make(0.0);
   DynamicsModel wrong = make(-1.0);
   for (DynamicsModel* const model : {&known, &unknown, &wrong}) {
-    learn(*model, drive, 0, 70);
+    learn(*model, drive, 0, 5);
+  }
+  EXPECT_LT(error_elsewhere(known), 0.5) << "before the first solve";
+  EXPECT_GT(error_elsewhere(unknown), 0.9);
+  for (DynamicsModel* const model : {&known, &unknown, &wrong}) {
+    learn(*model, drive, 5, 70);
   }
   EXPECT_LT(error_elsewhere(known), 0.6 * error_elsewhere(unknown));
   learn(wrong, drive, 70, drive.x.size());
