@@ -5,23 +5,33 @@
 #include "lab/commands.hpp"
 
 namespace kelpie::cli {
+#ifndef KELPIE_WITH_STUDIES
+namespace {
+
+void add_studies_elsewhere(CLI::App& app) {
+  for (const char* const study : {"bench", "benchmark", "control", "dead-reckoning", "diagnose",
+                                  "health", "hostile", "identify", "plan"}) {
+    add_absent(app, study,
+               "is not in this build: `scripts/build.sh release kelpie_lab` makes "
+               "build/release/kelpie-lab with all studies");
+  }
+}
+
+}  // namespace
+#endif
 
 int program(const std::vector<std::string>& words, const Streams& streams) {
-  CLI::App app{"kelpie-lab measures the paper's claims, the opponents and all times again.",
-               "kelpie-lab"};
-  app.set_version_flag("--version", "kelpie-lab " KELPIE_VERSION);
-  app.require_subcommand(1);
-  lab::add_reproduce(app);
-  lab::add_bench(app);
-  lab::add_benchmark(app);
-  lab::add_control(app);
-  lab::add_reckoning(app);
-  lab::add_diagnose(app);
-  lab::add_health(app);
-  lab::add_hostile(app);
-  lab::add_identify(app);
-  lab::add_plan(app);
-  return run_program(app, words, streams);
+  return run_program(
+      "kelpie-lab", "kelpie-lab measures the paper's claims, the opponents and all times again.",
+      {lab::add_reproduce,
+#ifdef KELPIE_WITH_STUDIES
+       lab::add_bench, lab::add_benchmark, lab::add_control, lab::add_reckoning, lab::add_diagnose,
+       lab::add_health, lab::add_hostile, lab::add_identify, lab::add_plan
+#else
+       add_studies_elsewhere
+#endif
+      },
+      words, streams);
 }
 
 }  // namespace kelpie::cli

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/run_program.hpp"
 #include "log/dataset.hpp"
@@ -26,15 +25,9 @@ namespace py = pybind11;
 std::string run_command(const std::vector<std::string>& words) {
   static Turns turns;
   const WritingTurn turn(turns);
-  CLI::App app("kelpie", "kelpie");
-  app.require_subcommand(1);
-  cli::add_learn(app);
-  cli::add_compare(app);
-  cli::add_tune(app);
-  cli::add_identify(app);
   const cli::TextStream said;
   const cli::StreamGuard guard({.out = said.file(), .err = said.file()});
-  cli::run_command(app, words);
+  cli::run_command({cli::add_learn, cli::add_compare, cli::add_tune, cli::add_identify}, words);
   return said.text();
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <string>
 #include <vector>
+
+namespace CLI {
+class App;  // <CLI/CLI.hpp> takes 7 s to compile, and programs need not know the class
+}
 
 namespace kelpie::cli {
 
@@ -29,6 +33,13 @@ void add_rollout(CLI::App& app);
 void add_study(CLI::App& app);
 void add_tune(CLI::App& app);
 void add_vehicle(CLI::App& app);
+
+/// A command that a build of the program is without: hidden, and refused with the place of the
+/// command.
+void add_absent(CLI::App& app, const std::string& name, const std::string& where);
+
+/// Two command lines, without "kelpie ", for the end of the help.
+void add_examples(CLI::App* command, const std::string& first, const std::string& second);
 
 /// The flag --help-all of the program. Added after the subcommands, so that they don't inherit the
 /// flag.

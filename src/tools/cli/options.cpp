@@ -77,6 +77,12 @@ TrainedModel read_given_model(const std::string& model, format::ModelInfo* info)
   return trained;
 }
 
+void add_absent(CLI::App& app, const std::string& name, const std::string& where) {
+  app.add_subcommand(name)->group("")->allow_extras()->callback([=, program = app.get_name()] {
+    throw InputError({.file = program + " " + name, .line = 0, .field = {}}, where);
+  });
+}
+
 void add_examples(CLI::App* command, const std::string& first, const std::string& second) {
   command->footer("Examples:\n  kelpie " + first + "\n  kelpie " + second);
 }

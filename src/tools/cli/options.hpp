@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/commands.hpp"
 #include "file/atomic_file.hpp"
 #include "format/model_json.hpp"
 #include "format/settings_file.hpp"
@@ -51,9 +52,6 @@ void add_model(CLI::App* command, const std::string& name, std::string& model);
 /// Reads the model of add_model(), with `info` where wanted, and warns of a doubtful model. Throws
 /// InputError as format::read_model() does; a missing file is told with the command that makes one.
 TrainedModel read_given_model(const std::string& model, format::ModelInfo* info = nullptr);
-
-/// Two command lines, without "kelpie ", for the end of the help.
-void add_examples(CLI::App* command, const std::string& first, const std::string& second);
 
 /// The option --out of a folder with a default.
 void add_out(CLI::App* command, std::string& folder, const std::string& meaning);

@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <csignal>
@@ -18,7 +19,6 @@
 #include <vector>
 
 #include "chart/text_table.hpp"
-#include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
@@ -201,6 +201,14 @@ void give_format(CLI::App& app, const std::shared_ptr<HelpFormat>& format) {
   }
 }
 
+void add_all(CLI::App& app, const Commands& commands) {
+  app.require_subcommand(1);
+  for (const auto add : commands) {
+    add(app);
+  }
+  check_numbers(app);
+}
+
 // CLI11 takes the last word first.
 void parse(CLI::App& app, const std::vector<std::string>& words) {
   app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
@@ -218,11 +226,14 @@ int ended(const CLI::App& app, const CLI::Error& error) {
 
 }  // namespace
 
-int run_program(CLI::App& app, const std::vector<std::string>& words, const Streams& streams) {
+int run_program(const std::string& name, const std::string& meaning, const Commands& commands,
+                const std::vector<std::string>& words, const Streams& streams) {
   const StreamGuard guard(streams);
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a write beyond the limit fails instead
+  CLI::App app{meaning, name};
   try {
-    check_numbers(app);
+    app.set_version_flag("--version", name + " " KELPIE_VERSION);
+    add_all(app, commands);
     app.failure_message(failure_message);
     try {
       parse(app, words);
@@ -246,8 +257,9 @@ int run_program(CLI::App& app, const std::vector<std::string>& words, const Stre
   }
 }
 
-void run_command(CLI::App& app, const std::vector<std::string>& words) {
-  check_numbers(app);
+void run_command(const Commands& commands, const std::vector<std::string>& words) {
+  CLI::App app("kelpie", "kelpie");
+  add_all(app, commands);
   try {
     parse(app, words);
   } catch (const CLI::ParseError& error) {

@@ -44,6 +44,13 @@ TEST_F(Help, OfAllCommandsHasEveryOptionOfEachUnderItsName) {
   EXPECT_NE(all.find("\nkelpie memory show "), std::string::npos);
 }
 
+TEST_F(Help, SaysWhereACommandIsThatThisProgramIsWithout) {
+  for (const std::string command : {"bench", "reproduce"}) {
+    testing::expect_refused(run(command + " --quick"),
+                            "kelpie " + command + ": has moved to `kelpie-lab " + command + "`");
+  }
+}
+
 TEST_F(Help, EndsWithTwoExamplesAndFitsTheTerminal) {
   for (const char* const width : {"64", "100"}) {
     ::setenv("COLUMNS", width, 1);  // NOLINT(concurrency-mt-unsafe): one thread
