@@ -17,6 +17,7 @@
 #include "fmu/guid.hpp"
 #include "format/model_json.hpp"
 #include "kelpie/core/error.hpp"
+#include "kelpie/kelpie.h"
 #include "kelpie/model/trained_model.hpp"
 
 namespace kelpie::fmu {
@@ -175,7 +176,7 @@ std::string model_description(const Vehicle& vehicle, const std::string& guid,
   xml.PushAttribute("modelName", options.name.c_str());
   xml.PushAttribute("guid", guid.c_str());
   xml.PushAttribute("description", "a vehicle whose dynamics kelpie learned from a log");
-  xml.PushAttribute("generationTool", "kelpie " KELPIE_VERSION);
+  xml.PushAttribute("generationTool", ("kelpie " + std::string(kelpie_version())).c_str());
   xml.PushAttribute("variableNamingConvention", "flat");
   print_element(xml, "CoSimulation",
                 {{"modelIdentifier", kModelIdentifier},
