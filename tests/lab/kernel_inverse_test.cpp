@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "linear_algebra.hpp"
 #include "svr/sample_store.hpp"
 #include "svr/squared_exponential.hpp"
 
@@ -52,7 +53,7 @@ struct Dictionary {
     return k + kRidge * Eigen::MatrixXd::Identity(n, n);
   }
   double largest_error() const {
-    const Eigen::MatrixXd exact = regularised().inverse();
+    const Eigen::MatrixXd exact = testing::inverse(regularised());
     double largest = 0.0;
     for (Eigen::Index i = 0; i < exact.rows(); ++i) {
       for (Eigen::Index j = 0; j < exact.cols(); ++j) {
@@ -98,7 +99,7 @@ TEST(KernelInverse, IndependenceIsThatOfLeavingTheSampleOut) {
     others.remove(i);
     const std::span<const double> row = others.similarity(left_out);
     const Eigen::Map<const Eigen::VectorXd> k(row.data(), 24);
-    const double by_definition = 1.0 - k.dot(others.regularised().ldlt().solve(k));
+    const double by_definition = 1.0 - k.dot(testing::least_squares(others.regularised(), k));
     EXPECT_NEAR(dictionary.inverse.independence(i), by_definition, 1e-8);
     EXPECT_NEAR(others.inverse.independence(row, 1.0), by_definition, 1e-8);
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "linear_algebra.hpp"
 
 namespace kelpie::scaling_test {
 namespace {
@@ -60,7 +61,7 @@ TEST(InputScaling, DistanceIsMahalanobis) {
   const Moments moments = moments_of(x);
   const auto scaling = InputScaling::from(moments, ScalingKind::full);
   ASSERT_TRUE(scaling.has_value());
-  const Eigen::MatrixXd inverse = as_eigen(moments.covariance()).inverse();
+  const Eigen::MatrixXd inverse = testing::inverse(as_eigen(moments.covariance()));
   for (Eigen::Index i = 1; i < 20; ++i) {
     const Eigen::VectorXd a = x.row(0);
     const Eigen::VectorXd b = x.row(i);

@@ -2,7 +2,7 @@
 // What the thrusters can still do, and commands for wanted accelerations.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <string>
@@ -13,6 +13,7 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/random.hpp"
 #include "kelpie/vehicle/diagnosis.hpp"
+#include "linear_algebra.hpp"
 #include "support.hpp"
 #include "vehicle/four_thrusters.hpp"
 
@@ -44,7 +45,7 @@ double least_by_trying_all(const Eigen::MatrixXd& h, const Eigen::VectorXd& g,
     }
     if (!free.empty()) {
       const Eigen::VectorXd right = (g - h * z)(free);
-      const Eigen::VectorXd solved = Eigen::MatrixXd(h(free, free)).ldlt().solve(right);
+      const Eigen::VectorXd solved = testing::least_squares(h(free, free), right);
       z(free) = solved;
     }
     if ((z.array() >= lower.array() - 1e-12).all() && (z.array() <= upper.array() + 1e-12).all()) {

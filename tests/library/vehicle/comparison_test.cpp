@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "linear_algebra.hpp"
 
 namespace kelpie::comparison_test {
 namespace {
@@ -39,7 +40,7 @@ NormalEquations sums_of(const Rows& rows) {
 }
 
 double squares_left(const Eigen::MatrixXd& a, const Eigen::VectorXd& y) {
-  return (y - a * a.colPivHouseholderQr().solve(y)).squaredNorm();
+  return (y - a * testing::least_squares(a, y)).squaredNorm();
 }
 
 // Least squares over all rows with the coefficients free, and the sizes in the later rows only.
@@ -66,10 +67,10 @@ TEST(Comparison, EvidenceIsThatOfLeastSquaresOverAllRows) {
   EXPECT_NEAR(comparison.of(both).evidence, 0.5 * precision * (none - squares_left(all, y)), 1e-6);
   EXPECT_NEAR(comparison.of(first).evidence,
               0.5 * precision * (none - squares_left(all.leftCols(5), y)), 1e-6);
-  const Eigen::VectorXd best = all.colPivHouseholderQr().solve(y);
+  const Eigen::VectorXd best = testing::least_squares(all, y);
   EXPECT_NEAR(comparison.of(both).size[0], best(4), 1e-6);
   EXPECT_NEAR(comparison.of(both).size[1], best(5), 1e-6);
-  const Eigen::MatrixXd spread = (all.transpose() * all).inverse() / precision;
+  const Eigen::MatrixXd spread = testing::inverse(all.transpose() * all) / precision;
   EXPECT_NEAR(comparison.of(both).error[1], std::sqrt(spread(5, 5)), 1e-6);
 }
 
