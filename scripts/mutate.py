@@ -5,13 +5,17 @@
     python3 scripts/mutate.py KELPIE [--mutants 3000] [--seed 1] [--jobs 2] [--seconds 3600]
                               [--keep FOLDER] [KIND...]
 
-KELPIE is the program. Of each KIND (all: --list names them) MUTANTS files are made from the small
-files in tests/ and from files that KELPIE writes: bytes flipped, cut, copied, numbers replaced by
-extreme ones, and checksums set right again for half of those that have one. A mutant breaks a rule
-where the command ends by a signal or a sanitizer's report, takes more than 10 s of processor time or
-60 s, more than 300 MB beyond the same command with the whole file, ends with another exit code than 0 or 2 (for studies
-also 1: a run failed), or ends with 2 and names no file. Such mutants are kept in FOLDER and
-counted; exit code 1 where there is one. SECONDS bounds the time of a kind.
+KELPIE is the program kelpie_in_a_row, a target of its own. Of each KIND (all: --list names them)
+MUTANTS files are made from the small files in tests/ and from files that KELPIE writes: bytes
+flipped, cut, copied, numbers replaced by extreme ones, and checksums set right again for half of
+those that have one. A mutant breaks a rule where the command ends by a signal or a sanitizer's
+report, takes more than 10 s of processor time or 60 s, more than 300 MB beyond the same command with
+the whole file, ends with another exit code than 0 or 2 (for studies also 1: a run failed), or ends
+with 2 and names no file. Such mutants are kept in FOLDER and counted; exit code 1 where there is one.
+SECONDS bounds the time of a kind.
+
+A start with sanitizers takes ten times as long as a small file, so 20 mutants share a process, which
+is held to the bounds of one. Where a rule breaks, each of the 20 gets a process of its own.
 """
 
 import argparse
@@ -39,6 +43,7 @@ CORPORA = TESTS / "fuzz"
 MOST_SECONDS = 10  # of processor time: the machine may have other work
 MOST_WAIT_SECONDS = 60.0
 MOST_MEMORY_KB = 300 * 1024
+ROW = 20  # mutants in a process
 REPORTS = (b"AddressSanitizer", b"LeakSanitizer", b"runtime error:", b"terminate called")
 LEARN = "--set preset=small --set warmup=20 --set buffer=30"
 NUMBERS = (b"1e308", b"-1e308", b"-0.0", b"nan", b"inf", b"-inf", b"0", b"-1", b"1e18", b"1e-320",
@@ -222,12 +227,13 @@ set = {warmup = 20, buffer = 30}
 
 class Kind:
     """Files of a kind, and the command that reads one. `command` has {f}: the mutant, {o}: a folder
-    of its own for what is written, {w}: the folder with the whole files."""
+    of its own for what is written, {w}: the folder with the whole files. Errors may name `others`
+    in place of the mutant."""
 
     def __init__(self, files, command, *, is_text=False, repair=None, place="{o}/mutant{e}",
-                 codes=(0, 2), usual=lambda data: True):
+                 codes=(0, 2), usual=lambda data: True, others=()):
         self.files, self.command, self.is_text, self.repair = files, command, is_text, repair
-        self.place, self.codes, self.usual = place, codes, usual
+        self.place, self.codes, self.usual, self.others = place, codes, usual, others
 
 
 def is_short_drive(data):
@@ -286,11 +292,12 @@ def make_kinds(kelpie, folder):
         "memory": Kind([folder / "memory.json"], learn + " --memory {f} --out {o}/out",
                        is_text=True),
         "config": Kind([folder / "config.toml"],
-                       "learn {w}/log.csv --config {f} --align none --out {o}/out", is_text=True),
+                       "learn {w}/log.csv --config {f} --align none --out {o}/out", is_text=True,
+                       others=["log.csv"]),  # which a configuration may not fit
         "scenario": Kind([folder / "scenario.toml"], "simulate {f} --out {o}/s.csv", is_text=True,
                          usual=is_short_drive, place="{w}/mutant_{n}{e}"),
         "vehicle": Kind([folder / "dagon.toml"], "simulate {o}/scenario.toml --out {o}/s.csv",
-                        is_text=True, place="{o}/dagon.toml"),
+                        is_text=True, place="{o}/dagon.toml", others=["scenario.toml"]),
         "study": Kind([folder / "study.toml"], "study {f} --out {o}/out --threads 1", is_text=True,
                       codes=(0, 1, 2), usual=is_small_study, place="{w}/mutant_{n}{e}"),
         "journal": Kind([journal], "study {w}/study.toml --out {o} --threads 1",
@@ -305,14 +312,13 @@ def make_kinds(kelpie, folder):
 
 
 class Ended:
-    """How a command ended."""
+    """How a process ended that ran a row of commands."""
 
-    def __init__(self, command, said):
-        # Of a file, so that what the command says can't fill a pipe.
-        with open(said, "wb") as errors:
-            process = subprocess.Popen(f"ulimit -t {MOST_SECONDS}; {command}", shell=True,
-                                       cwd=said.parent, stderr=errors, stdout=subprocess.DEVNULL,
-                                       stdin=subprocess.DEVNULL, start_new_session=True)
+    def __init__(self, kelpie, folder, commands):
+        (folder / "lines").write_text("".join(commands))
+        process = subprocess.Popen(f"ulimit -t {MOST_SECONDS}; exec {kelpie} <lines", shell=True,
+                                   cwd=folder, stderr=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, start_new_session=True)
         self.late = False
         timer = threading.Timer(MOST_WAIT_SECONDS, self.stop, (process,))
         timer.start()
@@ -321,7 +327,6 @@ class Ended:
         process.returncode = 0  # wait4 has it
         self.code = os.waitstatus_to_exitcode(status)
         self.memory_kb = usage.ru_maxrss
-        self.said = said.read_bytes()
 
     def stop(self, process):
         self.late = True
@@ -329,61 +334,88 @@ class Ended:
 
 
 class Attack:
-    """The mutants of a kind."""
+    """The mutants of a kind: each a number, its content and the file it was made of."""
 
     def __init__(self, kelpie, name, kind, whole, keep, seed):
         self.kelpie, self.name, self.kind, self.whole = kelpie, name, kind, whole
         self.keep, self.seed, self.broken, self.codes = keep, seed, [], {}
-        whole_ones = [self.end_of(f.read_bytes(), f, -k)[0] for k, f in enumerate(kind.files, 1)]
-        assert any(ended.code == 0 for ended in whole_ones), whole_ones[0].said.decode()
-        self.usual_kb = self.most_kb = max(ended.memory_kb for ended in whole_ones)
+        whole_ones = [self.end_of([(-k, f.read_bytes(), f)]) for k, f in enumerate(kind.files, 1)]
+        assert any(ones[0][0] == 0 for _, ones in whole_ones), whole_ones[0][1][0][1].decode()
+        self.usual_kb = self.most_kb = max(ended.memory_kb for ended, _ in whole_ones)
 
-    def end_of(self, data, original, number):
+    def command(self, folder, number, data, original):
+        """Writes the mutant; returns its file and the line of its command."""
+        names = {"o": folder, "w": self.whole, "n": number, "e": original.suffix,
+                 "recover": "--recover" if number % 2 else ""}
+        file = Path(self.kind.place.format(**names))
+        folder.mkdir()
+        file.write_bytes(data)
+        if self.name == "vehicle":
+            shutil.copy(self.whole / "scenario.toml", folder)
+        words = self.kind.command.format(f=file, **names).split()
+        return file, "\t".join((f"{folder}/said", *words)) + "\n"
+
+    def end_of(self, mutants):
+        """How the process of these mutants ended, and exit code, errors and file's name of each."""
         with tempfile.TemporaryDirectory() as folder:
-            names = {"o": folder, "w": self.whole, "n": number, "e": original.suffix,
-                     "recover": "--recover" if number % 2 else ""}
-            file = Path(self.kind.place.format(**names))
-            file.write_bytes(data)
-            if self.name == "vehicle":
-                shutil.copy(self.whole / "scenario.toml", folder)
-            command = f"exec {self.kelpie} " + self.kind.command.format(f=file, **names)
-            ended = Ended(command, Path(folder) / "said")
-            if file.parent == self.whole:
-                file.unlink()
-            return ended, file
+            folders = [Path(folder, str(number)) for number, _, _ in mutants]
+            files, commands = zip(*map(self.command, folders, *zip(*mutants)))
+            ended = Ended(self.kelpie, Path(folder), commands)
+            ones = []
+            for own, file in zip(folders, files):
+                said = (own / "said").read_bytes() if (own / "said").exists() else b""
+                said, _, code = said.rpartition(b"\n")
+                ones.append((ended.code or int(code), said, file.name))
+                if file.parent == self.whole:
+                    file.unlink()
+            return ended, ones
 
-    def one(self, number):
+    def mutant(self, number):
         dice = random.Random(f"{self.seed} {self.name} {number}")
         original = dice.choice(self.kind.files)
         data = mutated(original.read_bytes(), dice, self.kind.is_text)
         if self.kind.repair and dice.random() < 0.5:
             data = self.kind.repair(data)
-        if not self.kind.usual(data):
-            return
-        ended, file = self.end_of(data, original, number)
-        self.codes[ended.code] = self.codes.get(ended.code, 0) + 1
-        self.most_kb = max(self.most_kb, ended.memory_kb)
-        if why := self.complaint(ended, file):
-            kept = self.keep / f"{self.name}_{number}{original.suffix}"
-            kept.write_bytes(data)
-            self.broken.append(why)
-            print(f"{kept}: {why}: {ended.said[-300:].decode(errors='replace').strip()}",
-                  flush=True)
+        return number, data, original
 
-    def complaint(self, ended, file):
+    def row(self, numbers):
+        mutants = [mutant for mutant in map(self.mutant, numbers) if self.kind.usual(mutant[1])]
+        if mutants:
+            self.judge(mutants)
+
+    def judge(self, mutants):
+        """Counts mutants and what breaks a rule; whether something does."""
+        ended, ones = self.end_of(mutants)
+        whys = [self.dear(ended) or self.complaint(*one) for one in ones]
+        if any(whys) and len(mutants) > 1:
+            if any([self.judge([mutant]) for mutant in mutants]) or self.dear(ended):
+                return True
+            print("only in one process:", *(mutant[0] for mutant in mutants))
+        for (number, data, original), (code, said, _), why in zip(mutants, ones, whys):
+            self.codes[code] = self.codes.get(code, 0) + 1
+            if why:
+                kept = self.keep / f"{self.name}_{number}{original.suffix}"
+                kept.write_bytes(data)
+                self.broken.append(why)
+                print(f"{kept}: {why}: {said[-300:].decode(errors='replace').strip()}", flush=True)
+        self.most_kb = max(self.most_kb, ended.memory_kb)
+        return any(whys)
+
+    def dear(self, ended):
         if ended.late:
             return f"more than {MOST_WAIT_SECONDS:g} s"
         if -ended.code in (signal.SIGXCPU, signal.SIGKILL):
             return f"more than {MOST_SECONDS} s of processor time"
-        if any(report in ended.said for report in REPORTS):
-            return "a report"
-        if ended.code not in self.kind.codes:
-            return f"exit code {ended.code}"
         if ended.memory_kb > self.usual_kb + MOST_MEMORY_KB:
             return f"{ended.memory_kb >> 10} MB, {self.usual_kb >> 10} MB with the whole file"
-        # The message may name the log instead, where a configuration doesn't fit the log.
-        folders = (file.parent.name.encode(), self.whole.name.encode())
-        if ended.code == 2 and not any(folder in ended.said for folder in folders):
+        return None
+
+    def complaint(self, code, said, file):
+        if any(report in said for report in REPORTS):
+            return "a report"
+        if code not in self.kind.codes:
+            return f"exit code {code}"
+        if code == 2 and not any(name.encode() in said for name in (file, *self.kind.others)):
             return "exit code 2 without a file's name"
         return None
 
@@ -413,11 +445,11 @@ def main():
             begin = time.monotonic()
             attack = Attack(kelpie, name, kinds[name], Path(folder), options.keep, options.seed)
 
-            def one(number, attack=attack, begin=begin):
+            def row(first, attack=attack, begin=begin):
                 if time.monotonic() < begin + options.seconds:
-                    attack.one(number)
+                    attack.row(range(first, min(first + ROW, options.mutants)))
             with ThreadPoolExecutor(options.jobs) as pool:
-                list(pool.map(one, range(options.mutants)))
+                list(pool.map(row, range(0, options.mutants, ROW)))
             codes = ", ".join(f"{n} ended with {c}" for c, n in sorted(attack.codes.items()))
             print(f"{name}: {sum(attack.codes.values())} mutants in "
                   f"{time.monotonic() - begin:.0f} s: {codes}; at most {attack.most_kb >> 10} MB, "
