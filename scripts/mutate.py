@@ -319,18 +319,13 @@ class Ended:
         process = subprocess.Popen(f"ulimit -t {MOST_SECONDS}; exec {kelpie} <lines", shell=True,
                                    cwd=folder, stderr=subprocess.DEVNULL,
                                    stdout=subprocess.DEVNULL, start_new_session=True)
-        self.late = False
-        timer = threading.Timer(MOST_WAIT_SECONDS, self.stop, (process,))
+        timer = threading.Timer(MOST_WAIT_SECONDS, os.killpg, (process.pid, signal.SIGKILL))
         timer.start()
         _, status, usage = os.wait4(process.pid, 0)
         timer.cancel()
         process.returncode = 0  # wait4 has it
         self.code = os.waitstatus_to_exitcode(status)
         self.memory_kb = usage.ru_maxrss
-
-    def stop(self, process):
-        self.late = True
-        os.killpg(process.pid, 9)
 
 
 class Attack:
@@ -402,10 +397,8 @@ class Attack:
         return any(whys)
 
     def dear(self, ended):
-        if ended.late:
-            return f"more than {MOST_WAIT_SECONDS:g} s"
         if -ended.code in (signal.SIGXCPU, signal.SIGKILL):
-            return f"more than {MOST_SECONDS} s of processor time"
+            return f"more than {MOST_SECONDS} s of processor time or {MOST_WAIT_SECONDS:g} s"
         if ended.memory_kb > self.usual_kb + MOST_MEMORY_KB:
             return f"{ended.memory_kb >> 10} MB, {self.usual_kb >> 10} MB with the whole file"
         return None
