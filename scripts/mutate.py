@@ -318,8 +318,8 @@ class Ended:
         (folder / "lines").write_text("".join(commands))
         process = subprocess.Popen(f"ulimit -t {MOST_SECONDS}; exec {kelpie} <lines", shell=True,
                                    cwd=folder, stderr=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL, start_new_session=True)
-        timer = threading.Timer(MOST_WAIT_SECONDS, os.killpg, (process.pid, signal.SIGKILL))
+                                   stdout=subprocess.DEVNULL)
+        timer = threading.Timer(MOST_WAIT_SECONDS, os.kill, (process.pid, signal.SIGKILL))
         timer.start()
         _, status, usage = os.wait4(process.pid, 0)
         timer.cancel()
