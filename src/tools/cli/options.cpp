@@ -83,6 +83,17 @@ void add_absent(CLI::App& app, const std::string& name, const std::string& where
   });
 }
 
+InputError of_model(const InputError& error, const TrainedModel& model, const std::string& file) {
+  std::vector<std::string> columns = model.target_names();
+  columns.insert(columns.end(), model.input_names.begin(), model.input_names.end());
+  columns.push_back(model.alignment.water.heading);
+  const Place& place = error.place();
+  const bool is_taken =
+      !place.file.empty() && !place.field.empty() && std::ranges::count(columns, place.field) > 0;
+  return is_taken ? InputError(place, error.message() + "; a column of the model in " + file)
+                  : error;
+}
+
 void add_examples(CLI::App* command, const std::string& first, const std::string& second) {
   command->footer("Examples:\n  kelpie " + first + "\n  kelpie " + second);
 }

@@ -270,10 +270,8 @@ void tell_far_inputs(const TrainedModel& model, const SeenRows& seen, const std:
   }
 }
 
-void predict(const PredictArguments& options) {
-  check_output("--out", options.out, {options.source.path, options.model, options.config});
-  format::ModelInfo info;
-  TrainedModel model = read_given_model(options.model, &info);
+void predict_log(const PredictArguments& options, TrainedModel& model,
+                 const format::ModelInfo& info) {
   const log::LogConfig config = log::read_log_config(options.config);
   log::Roles roles = config.roles;
   roles.inputs = model.input_names;
@@ -315,6 +313,17 @@ void predict(const PredictArguments& options) {
     }
   }
   say("predictions: {}\n", options.out);
+}
+
+void predict(const PredictArguments& options) {
+  check_output("--out", options.out, {options.source.path, options.model, options.config});
+  format::ModelInfo info;
+  TrainedModel model = read_given_model(options.model, &info);
+  try {
+    predict_log(options, model, info);
+  } catch (const InputError& error) {
+    throw of_model(error, model, options.model);
+  }
 }
 
 }  // namespace

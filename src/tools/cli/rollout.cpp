@@ -240,15 +240,7 @@ void roll_commands(const RolloutArguments& options, const TrainedModel& model,
       file.string());
 }
 
-void rollout(const RolloutArguments& options) {
-  options.answer.begin();
-  if (!options.start.empty()) {
-    refuse_judging(options);
-  }
-  constexpr std::size_t kMostHorizons = 100;
-  require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
-  format::ModelInfo info;
-  TrainedModel model = read_given_model(options.model, &info);
+void roll(const RolloutArguments& options, TrainedModel& model, const format::ModelInfo& info) {
   const OpenLoop loop = open_loop(model);
   if (options.start.empty()) {
     log::Dataset read = read_judged_log(options, model);
@@ -262,6 +254,22 @@ void rollout(const RolloutArguments& options) {
     write_judgement(options, judge(options, model, info.units, loop, data));
   } else {
     roll_commands(options, model, info.units, loop);
+  }
+}
+
+void rollout(const RolloutArguments& options) {
+  options.answer.begin();
+  if (!options.start.empty()) {
+    refuse_judging(options);
+  }
+  constexpr std::size_t kMostHorizons = 100;
+  require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
+  format::ModelInfo info;
+  TrainedModel model = read_given_model(options.model, &info);
+  try {
+    roll(options, model, info);
+  } catch (const InputError& error) {
+    throw of_model(error, model, options.model);
   }
 }
 

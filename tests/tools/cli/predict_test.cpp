@@ -183,6 +183,7 @@ TEST_F(Predict, RefusesLogsOfAnotherVehicleAndDamagedModels) {
   write("other.csv", "u,m\n1,2\n");
   Outcome outcome = predict("other.csv");
   testing::expect_refused(outcome, "other.csv: n: there is no such column");
+  testing::expect_refused(outcome, "; a column of the model in out/model.json");
   EXPECT_FALSE(exists("p.csv"));
   write("twice.csv", "u,n,udot_predicted\n1,2,3\n");
   outcome = predict("twice.csv");

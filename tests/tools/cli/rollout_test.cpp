@@ -67,11 +67,13 @@ TEST_F(RolloutCommand, FollowsCommandsFromAStart) {
 }
 
 TEST_F(RolloutCommand, RefusesWithExitCodeTwo) {
+  write("other.csv", "t,u,m,udot\n0,1,2,3\n");
   const std::vector<std::pair<std::string, std::string>> cases{
       {"log.csv --start w=1",
        "--start: 'w' is no velocity of the model (did you mean 'u'?); there are u"},
       {"log.csv --start u=fast", "--start u: 'fast' is not a finite number"},
       {"absent.csv", "absent.csv"},
+      {"other.csv", "; a column of the model in out/model.json"},
       {"log.csv --inputs nonsense", "--inputs: are those of the model: u,n"},
       {"log.csv --targets x,y", "--targets: are those of the model: udot"},
       {"log.csv --start u=0 --json", "--json: belongs to the judgement of a log"},
