@@ -14,8 +14,8 @@ the whole file, ends with another exit code than 0 or 2 (for studies also 1: a r
 with 2 and names no file. Such mutants are kept in FOLDER and counted; exit code 1 where there is one.
 SECONDS bounds the time of a kind.
 
-A start with sanitizers takes ten times as long as a small file, so 20 mutants share a process, which
-is held to the bounds of one. Where a rule breaks, each of the 20 gets a process of its own.
+A start with sanitizers takes ten times as long as a small file, so 50 mutants share a process, which
+is held to the bounds of one. Where a rule breaks, each of the 50 gets a process of its own.
 """
 
 import argparse
@@ -43,7 +43,7 @@ CORPORA = TESTS / "fuzz"
 MOST_SECONDS = 10  # of processor time: the machine may have other work
 MOST_WAIT_SECONDS = 60.0
 MOST_MEMORY_KB = 300 * 1024
-ROW = 20  # mutants in a process
+ROW = 50  # mutants in a process
 REPORTS = (b"AddressSanitizer", b"LeakSanitizer", b"runtime error:", b"terminate called")
 LEARN = "--set preset=small --set warmup=20 --set buffer=30"
 NUMBERS = (b"1e308", b"-1e308", b"-0.0", b"nan", b"inf", b"-inf", b"0", b"-1", b"1e18", b"1e-320",
