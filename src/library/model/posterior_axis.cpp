@@ -42,8 +42,8 @@ PosteriorAxis::PosteriorAxis(std::size_t inputs, const SharedSettings& shared,
                              const OnlineSvrSettings& settings, const TermSet& terms,
                              std::span<const std::size_t> states)
     : features_(inputs, terms, states, centres_of(settings)),
-      posterior_(features_.capacity(), features_.terms_end(), Likelihood::student),
-      lenient_(features_.capacity(), features_.terms_end(), Likelihood::huber),
+      posterior_(features_.capacity(), features_.terms_end()),
+      screen_(inputs, features_.terms_end()),
       scaling_{.input = features_.units(),
                .target = {},
                .term_scale = std::vector<double>(terms.size(), 1.0)},
@@ -71,26 +71,48 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   }
   Decision decision{.prediction = {.value = predict(x)}, .had_model = posterior_.ready()};
   uncertainty_.score(decision, y, t);
-  if (has_scale_) {
-    mixture_.update(as_span(scale_sample(scaling_, terms(), x)), scaling_.target.apply(y), t,
-                    block_length());
+  const RecentRows::Row row{.x = x, .y = y, .left = y - expected(x), .t = t};
+  screen_.add(row, features_, features_.evaluate(x), posterior_);
+  if (const std::optional<RowScreen::Won> won = screen_.won()) {
+    begin_anew();
+    decision.changed = won->is_change;
+    decision.changed_since = won->since_s;
+    tally_.changes += won->is_change ? 1 : 0;
   }
-  learn(x, y, t);
-  const bool is_new = solve(posterior_);
-  if (solve(lenient_) || is_new) {
+  for (int i = 0; i < kPosterior.rows_per_update; ++i) {
+    if (const std::optional<RowScreen::Due> due = screen_.next()) {
+      learn(*due);
+    }
+  }
+  if (posterior_.wants_solve() && posterior_.solve(features_.groups(), budget_)) {
     const bool fits = has_scale_ && posterior_.targets(prior_).scale <
                                         kPosterior.outgrown * scaling_.target.scale;
     fits ? serve() : change_scale();
     decision.published = true;
   }
-  ++tally_.accepted;
+  trusted_last_ = trusted_last_ && !screen_.last_waits();
+  decision.verdict = screen_.last_waits() ? Verdict::held_back : Verdict::accepted;
+  tally_.implausible += screen_.dropped();
   return decision;
 }
 
-// True at the end of a solve that makes a model.
-bool PosteriorAxis::solve(Posterior& posterior) {
-  return posterior.wants_solve() && posterior.solve(features_.groups(), budget_) &&
-         posterior_.ready();
+// Forgets what was learned; of the rows that are due, the first make a model at once.
+void PosteriorAxis::begin_anew() {
+  tally_.forgotten = tally_.accepted;
+  posterior_.clear();
+  features_.clear();
+  known_.samples.clear();
+  known_.density.clear();
+  far_s_ = 0.0;
+  mixture_.clear();
+  has_scale_ = false;
+  for (std::optional<RowScreen::Due> due; !has_scale_ && (due = screen_.next());) {
+    learn(*due);
+    if (posterior_.wants_solve()) {
+      settle(posterior_, features_.groups());
+      change_scale();
+    }
+  }
 }
 
 // Garbage ends; velocities that stay far away are those of a vehicle that has set off.
@@ -102,23 +124,26 @@ double PosteriorAxis::trust(std::span<const double> x, double t) {
   return far_s_ > kPosterior.garbage_s ? 1.0 : trust;
 }
 
-void PosteriorAxis::learn(std::span<const double> x, double y, double t) {
+void PosteriorAxis::learn(const RowScreen::Due& due) {
+  const auto& [x, y, left, t] = due.row;
+  if (has_scale_) {
+    mixture_.update(as_span(scale_sample(scaling_, terms(), x)), scaling_.target.apply(y), t,
+                    block_length());
+  }
   const double trust = this->trust(x, t);
   trusted_last_ = trust == 1.0;
   if (const std::optional<Matrix> map = features_.observe(x, trust)) {
     posterior_.change_features(features_.terms_end(), *map);
-    lenient_.change_features(features_.terms_end(), *map);
     known_.samples.clear();
     known_.density.clear();
     if (posterior_.ready()) {
       change_scale();
     }
   }
-  const std::span<const double> phi = features_.learn(x);
-  const double left = y - expected(x);
-  posterior_.add(phi, left, trust);
-  lenient_.add(phi, left, trust);
+  features_.evaluate(x);
+  posterior_.add(features_.learn(x), left, trust, due.likelihood);
   know_centres();
+  ++tally_.accepted;
 }
 
 // What was known beforehand says of raw inputs.
@@ -153,35 +178,29 @@ void PosteriorAxis::change_scale() {
 }
 
 // Weights of the terms by scaled terms, the last number the bias.
-PosteriorAxis::TermWeights PosteriorAxis::scaled(const Posterior& posterior,
-                                                 std::span<const double> theta) const {
+PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta) const {
   TermWeights weights(theta.size());
   for (std::size_t k = 1; k < theta.size(); ++k) {
     weights[k - 1] = (theta[k] + known(k)) * scaling_.term_scale[k - 1] / scaling_.target.scale;
   }
-  weights[theta.size() - 1] = scaling_.target.apply(posterior.centre() + theta[0] + known(0));
+  weights[theta.size() - 1] = scaling_.target.apply(posterior_.centre() + theta[0] + known(0));
   return weights;
 }
 
 // The posterior's mean as a function of scaled kernels and terms.
 void PosteriorAxis::serve() {
-  serve(Likelihood::student, posterior_);
-  serve(Likelihood::huber, lenient_.ready() ? lenient_ : posterior_);
-  mixture_.assign_terms(as_span(scaled(posterior_, posterior_.first_weights())));
-  const double of_known = posterior_.targets(prior_).mean - posterior_.targets().mean;
-  const double mean = scaling_.target.apply(posterior_.centre() + of_known);
-  mixture_.assign_mean({&mean, 1});
-}
-
-void PosteriorAxis::serve(Likelihood likelihood, const Posterior& posterior) {
-  const std::span<const double> theta = posterior.weights();
+  const std::span<const double> theta = posterior_.weights();
   const std::size_t first = features_.terms_end();
   beta_.assign(features_.basis().size(), 0.0);  // centres that came since have no weight yet
   std::ranges::transform(theta.subspan(first), beta_.begin(),
                          [&](double weight) { return weight / scaling_.target.scale; });
   features_.basis().to_kernel(beta_);
-  mixture_.assign_posterior(likelihood, features_.basis().centres(), beta_,
-                            as_span(scaled(posterior, theta.first(first))));
+  mixture_.assign_posterior(features_.basis().centres(), beta_,
+                            as_span(scaled(theta.first(first))));
+  mixture_.assign_terms(as_span(scaled(posterior_.first_weights())));
+  const double of_known = posterior_.targets(prior_).mean - posterior_.targets().mean;
+  const double mean = scaling_.target.apply(posterior_.centre() + of_known);
+  mixture_.assign_mean({&mean, 1});
 }
 
 // Novelty compares places with all centres.
@@ -291,7 +310,7 @@ const DynamicsAxis& PosteriorAxis::dynamics_axis() const {
 void PosteriorAxis::visit(Archive& archive) {
   archive.part("features", features_);
   archive.part("posterior", posterior_);
-  archive.part("lenient", lenient_);
+  archive.part("screen", screen_);
   archive.list(prior_, terms().size() + 1, [&](double& one) { archive.number(one); });
   uncertainty_.visit(archive);
   archive.number(last_s_);
@@ -314,9 +333,8 @@ void PosteriorAxis::visit(Archive& archive) {
 std::size_t PosteriorAxis::bytes(std::size_t inputs, std::size_t terms,
                                  const OnlineSvrSettings& settings) {
   const std::size_t centres = centres_of(settings);
-  const std::size_t m = centres + terms + 1;
-  return sizeof(PosteriorAxis) +
-         (6 * m * (m + 1) / 2 + centres * (centres + 1) / 2 + 10 * m) * sizeof(double) +
+  return sizeof(PosteriorAxis) + Posterior::bytes(centres + terms + 1, terms + 1) +
+         RowScreen::bytes(inputs, terms + 1) + centres * (centres + 1) / 2 * sizeof(double) +
          2 * SampleStore::bytes(inputs, centres) + KernelDensity::bytes(inputs, centres) +
          Mixture::bytes(inputs, terms, centres, settings);
 }

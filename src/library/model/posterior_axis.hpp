@@ -14,6 +14,7 @@
 #include "posterior/features.hpp"
 #include "posterior/mixture.hpp"
 #include "posterior/posterior.hpp"
+#include "posterior/row_screen.hpp"
 
 namespace kelpie {
 
@@ -41,9 +42,7 @@ class PosteriorAxis final : public ModelAxis {
     budget_ = budget;
     mixture_.limit(budget);
   }
-  bool unfinished() const override {
-    return posterior_.wants_solve() || lenient_.wants_solve() || mixture_.unfinished();
-  }
+  bool unfinished() const override { return posterior_.wants_solve() || mixture_.unfinished(); }
   bool trusted_last() const override { return trusted_last_; }
 
   double predict(std::span<const double> x) const override;
@@ -80,18 +79,17 @@ class PosteriorAxis final : public ModelAxis {
   double known(std::size_t feature) const { return prior_.empty() ? 0.0 : prior_[feature]; }
   double expected(std::span<const double> x) const;
   double trust(std::span<const double> x, double t);
-  void learn(std::span<const double> x, double y, double t);
+  void learn(const RowScreen::Due& due);
+  void begin_anew();
   void change_scale();
-  TermWeights scaled(const Posterior& posterior, std::span<const double> theta) const;
-  void serve(Likelihood likelihood, const Posterior& posterior);
-  bool solve(Posterior& posterior);
+  TermWeights scaled(std::span<const double> theta) const;
   void serve();
   std::size_t block_length() const;
   void know_centres();
 
   Features features_;
   Posterior posterior_;        ///< of the targets less what was expected()
-  Posterior lenient_;          ///< the same of Huber's likelihood
+  RowScreen screen_;           ///< which rows are learned
   std::vector<double> prior_;  ///< the prior's mean of the first features; empty: 0
   AxisScaling scaling_;        ///< of the mixture
   bool has_scale_ = false;     ///< after the first solve

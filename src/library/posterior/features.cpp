@@ -38,13 +38,13 @@ Features::Features(std::size_t inputs, const TermSet& terms, std::span<const std
       mean_(inputs),
       scatter_(inputs) {
   std::map<std::array<double, 3>, std::uint8_t> known;
-  groups_.push_back(Posterior::kFlat);
+  groups_.push_back(FeatureGroup::kFlat);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     const auto next =
-        static_cast<std::uint8_t>(std::min(known.size() + 1, Posterior::kMostGroups - 1));
+        static_cast<std::uint8_t>(std::min(known.size() + 1, FeatureGroup::kMost - 1));
     groups_.push_back(known.emplace(degrees(terms_, k, inputs, states), next).first->second);
   }
-  groups_.resize(capacity(), Posterior::kKernel);
+  groups_.resize(capacity(), FeatureGroup::kKernel);
   phi_.resize(capacity());
 }
 
@@ -92,20 +92,33 @@ std::optional<Matrix> Features::observe(std::span<const double> x, double trust)
   return basis_.move(ratio, shift, kPosterior.novelty / 2.0);
 }
 
-std::span<const double> Features::learn(std::span<const double> x) {
-  phi_[0] = 1.0;
-  terms_.evaluate(x, std::span(phi_).subspan(1, terms_.size()));
-  const std::size_t first = terms_end(), functions = basis_.size();
+void Features::first(std::span<const double> x, std::span<double> phi) const {
+  phi[0] = 1.0;
+  terms_.evaluate(x, phi.subspan(1, terms_.size()));
+}
+
+std::span<const double> Features::evaluate(std::span<const double> x) {
+  first(x, phi_);
+  novelty_ = 0.0;
   if (has_units()) {
     const ScaledInput z = units_.apply(x);
-    const std::span<double> values = std::span(phi_).subspan(first, functions);
-    const double novelty = basis_.evaluate(as_span(z), values);
-    if (novelty > kPosterior.novelty && functions < basis_.centres().capacity()) {
-      basis_.add(as_span(z), values, novelty);
-      phi_[first + functions] = std::sqrt(novelty);
-    }
+    novelty_ = basis_.evaluate(as_span(z), std::span(phi_).subspan(terms_end(), basis_.size()));
   }
   return std::span(phi_).first(size());
+}
+
+std::span<const double> Features::learn(std::span<const double> x) {
+  const std::size_t functions = basis_.size();
+  if (novelty_ > kPosterior.novelty && functions < basis_.centres().capacity()) {
+    const ScaledInput z = units_.apply(x);
+    basis_.add(as_span(z), std::span(phi_).subspan(terms_end(), functions), novelty_);
+    phi_[terms_end() + functions] = std::sqrt(novelty_);
+  }
+  return std::span(phi_).first(size());
+}
+
+void Features::clear() {
+  *this = Features(units_.dimension(), terms_, states_, basis_.centres().capacity());
 }
 
 void Features::visit(Archive& archive) {

@@ -43,8 +43,15 @@ class Features {
   /// Takes note of a sample; T where the kernel has new units from now on.
   std::optional<Matrix> observe(std::span<const double> x, double trust);
 
-  /// φ(x), of size() numbers. Where x is novel and a place is free, x becomes a centre first.
+  /// The first terms_end() features.
+  void first(std::span<const double> x, std::span<double> phi) const;
+
+  /// φ(x), of size() numbers.
+  std::span<const double> evaluate(std::span<const double> x);
+  /// φ(x), x as in evaluate() last. Where x is novel and a place is free, x becomes a centre first.
   std::span<const double> learn(std::span<const double> x);
+
+  void clear();  ///< Forgets all samples. Allocates.
 
   /// The units, as the input scaling of a model: z = (x − mean)/deviation.
   const InputScaling& units() const { return units_; }
@@ -58,6 +65,7 @@ class Features {
   KernelBasis basis_;
   std::vector<std::uint8_t> groups_;
   std::vector<double> phi_;  ///< of the last sample
+  double novelty_ = 0.0;     ///< of the last sample
   InputScaling units_;
   double rows_ = 0.0, weight_ = 0.0, weight_at_units_ = 0.0;
   std::vector<double> mean_, scatter_;

@@ -14,15 +14,14 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::string_view, 5> kMembersOfMixture{"posterior", "huber", "terms", "svr",
-                                                            "mean"};
+constexpr std::array<std::string_view, 4> kMembersOfMixture{"posterior", "terms", "svr", "mean"};
 
 FunctionMix members_of(const SvrFunction& posterior, const SvrFunction& paper) {
   const MixedKernel& kernel = posterior.kernel();
   const SvrFunction none(MixedKernel(kernel.local().gamma(), {}, kernel.inputs(), kernel.terms()),
                          0);
   FunctionMix mix;
-  for (const SvrFunction* const function : {&posterior, &posterior, &none, &paper, &none}) {
+  for (const SvrFunction* const function : {&posterior, &none, &paper, &none}) {
     mix.members.push_back({std::string(kMembersOfMixture[mix.members.size()]), 0.0, *function});
   }
   return mix;
@@ -105,11 +104,10 @@ void Mixture::freeze() {
   }
 }
 
-void Mixture::assign_posterior(Likelihood likelihood, const SampleStore& centres,
-                               std::span<const double> beta, std::span<const double> weights) {
-  const Place member = likelihood == Likelihood::student ? kOfPosterior : kOfHuber;
-  mix_.members[member].function.assign(centres, beta, weights.first(weights.size() - 1),
-                                       weights.back());
+void Mixture::assign_posterior(const SampleStore& centres, std::span<const double> beta,
+                               std::span<const double> weights) {
+  mix_.members[kOfPosterior].function.assign(centres, beta, weights.first(weights.size() - 1),
+                                             weights.back());
 }
 
 // Weights of all terms, or of none.
@@ -133,6 +131,18 @@ void Mixture::move(const SampleMap& map) {
   limit();
   paper_.move(map);
   mix_.members[kOfPaper].function.clear();
+  serve();
+}
+
+void Mixture::clear() {
+  paper_.clear();
+  for (FunctionMix::Member& member : mix_.members) {
+    member.function.clear();
+  }
+  shares_ = MemberShares(kPosterior.first_shares);
+  seen_.clear();
+  seen_terms_ = SeenTermRanges(mix_.members[kOfPosterior].function.kernel().terms());
+  limit();
   serve();
 }
 
@@ -160,7 +170,7 @@ std::size_t Mixture::bytes(std::size_t inputs, std::size_t terms, std::size_t ce
                            const OnlineSvrSettings& settings) {
   const std::size_t linear = SvrFunction::bytes(inputs, terms, 0);
   return PaperMember::bytes(inputs, terms, settings) + SeenTermRanges::bytes(terms) +
-         2 * (2 * SvrFunction::bytes(inputs, terms, centres) + 2 * linear +
+         2 * (SvrFunction::bytes(inputs, terms, centres) + 2 * linear +
               SvrFunction::bytes(inputs, terms, settings.places()) +
               kMembers * sizeof(FunctionMix::Member));
 }

@@ -17,11 +17,10 @@
 
 namespace kelpie {
 
-/// The function in service of an axis, on scaled samples: the mean of five members, weighted by
+/// The function in service of an axis, on scaled samples: the mean of four members, weighted by
 /// losses on samples that the members have not learned yet (MemberShares):
 ///
-///     posterior  the posterior's mean, of Student's likelihood
-///     huber      the same of Huber's, for rare manoeuvres
+///     posterior  the posterior's mean
 ///     terms      the posterior of the terms of the equation of motion alone, without kernel
 ///     svr        the paper's learner
 ///     mean       the mean of the targets, for axes without predictable structure
@@ -45,9 +44,9 @@ class Mixture {
   /// learn a sample.
   void update(std::span<const double> z, double y, double t, std::size_t block);
 
-  /// A function of a solve. `weights`: of the terms, the last number the bias.
-  void assign_posterior(Likelihood likelihood, const SampleStore& centres,
-                        std::span<const double> beta, std::span<const double> weights);
+  /// Functions of a solve. `weights`: of the terms, the last number the bias.
+  void assign_posterior(const SampleStore& centres, std::span<const double> beta,
+                        std::span<const double> weights);
   void assign_terms(std::span<const double> weights) { assign_linear(kOfTerms, weights); }
   void assign_mean(std::span<const double> weights) { assign_linear(kOfMean, weights); }
 
@@ -55,6 +54,9 @@ class Mixture {
   /// have to be assigned next, and then freeze() called.
   void move(const SampleMap& map);
   void freeze();
+
+  /// Forgets all samples. Functions of a solve have to be assigned next, and then freeze() called.
+  void clear();
 
   /// The posterior begins with a vehicle known beforehand: the members that know the vehicle have
   /// larger shares until errors are known, and terms have no range. Requires that nothing has been
@@ -68,7 +70,7 @@ class Mixture {
                            const OnlineSvrSettings& settings);
 
  private:
-  enum Place : std::size_t { kOfPosterior, kOfHuber, kOfTerms, kOfPaper, kOfMean, kMembers };
+  enum Place : std::size_t { kOfPosterior, kOfTerms, kOfPaper, kOfMean, kMembers };
 
   void score(std::span<const double> z, double y, std::size_t block);
   void assign_linear(Place member, std::span<const double> weights);

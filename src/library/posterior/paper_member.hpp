@@ -27,6 +27,11 @@ class PaperMember {
   /// Samples are in another scale from now on, `map` of the scale so far.
   void move(const SampleMap& map);
 
+  void clear() {  ///< Forgets all samples.
+    svr_.clear();
+    relearns_ = false;
+  }
+
   bool ready() const { return !relearns_ && svr_.ready(); }  ///< Whether a model is in service.
   bool unfinished() const { return svr_.unfinished(); }
   const OnlineSvr& learner() const { return svr_; }

@@ -12,11 +12,25 @@
 #include "posterior/tuning.hpp"
 
 namespace kelpie {
+namespace {
 
-Posterior::Posterior(std::size_t capacity, std::size_t first, Likelihood likelihood)
-    : likelihood_(likelihood),
-      gram_(capacity),
-      precision_(kMostGroups, 1.0),
+double weight_of(double surprise, Likelihood likelihood) {
+  switch (likelihood) {
+    case Likelihood::student:
+      return (kPosterior.freedom + 1.0) / (kPosterior.freedom + surprise);
+    case Likelihood::huber:
+      return std::min(1.0, kPosterior.huber / std::sqrt(surprise));
+    case Likelihood::gauss:
+      break;
+  }
+  return 1.0;
+}
+
+}  // namespace
+
+Posterior::Posterior(std::size_t capacity, std::size_t first)
+    : gram_(capacity),
+      precision_(FeatureGroup::kMost, 1.0),
       sums_(capacity),
       factor_(capacity),
       first_(first),
@@ -24,12 +38,34 @@ Posterior::Posterior(std::size_t capacity, std::size_t first, Likelihood likelih
       first_scale_(first, 1.0) {
   first_factor_.resize(first);
   for (RoomyVector<double>* const numbers :
-       {&moment_, &scale_, &right_, &theta_, &variance_, &scratch_, &weights_, &errors_}) {
+       {&moment_, &scale_, &right_, &theta_, &variance_, &weights_, &errors_}) {
     numbers->reserve(capacity);
   }
+  scratch_.reserve(2 * capacity);
 }
 
-void Posterior::add(std::span<const double> phi, double y, double trust) {
+void Posterior::clear() {
+  gram_.resize(0);
+  moment_.clear();
+  weights_.clear();
+  errors_.clear();
+  origin_ = rows_ = weight_ = square_ = widths_at_ = centre_ = served_at_ = 0.0;
+  informed_ = noise_ = spread_ = 1.0;
+  correlation_ = ErrorCorrelation();
+  std::ranges::fill(precision_, 1.0);
+  task_ = Task::none;
+  round_ = 0;
+}
+
+double Posterior::surprise(std::span<const double> phi, double y) {
+  if (!ready()) {
+    return 0.0;
+  }
+  const double error = (y - value(phi)) / spread_;
+  return error * error / (noise_ + variance_of_first(phi));
+}
+
+void Posterior::add(std::span<const double> phi, double y, double trust, Likelihood likelihood) {
   if (rows_ >= kPosterior.first_rows && !differ() && y == origin_) {
     return;  // at rest: more of the same would outvote the vehicle that sets off
   }
@@ -37,10 +73,7 @@ void Posterior::add(std::span<const double> phi, double y, double trust) {
   if (ready()) {
     const double error = (y - value(phi)) / (spread_ * std::sqrt(noise_));
     correlation_.add(std::clamp(error, -kPosterior.most_deviations, kPosterior.most_deviations));
-    const double square = error * error * noise_ / (noise_ + variance_of_first(phi));
-    weight *= likelihood_ == Likelihood::student
-                  ? (kPosterior.freedom + 1.0) / (kPosterior.freedom + square)
-                  : std::min(1.0, kPosterior.huber / std::sqrt(square));
+    weight *= weight_of(surprise(phi, y), likelihood);
   }
   origin_ = rows_ == 0.0 ? y : origin_;
   y -= origin_;
@@ -120,6 +153,43 @@ bool Posterior::solve(std::span<const std::uint8_t> group, Budget& budget) {
   return false;
 }
 
+void settle(Posterior& posterior, std::span<const std::uint8_t> group) {
+  for (Budget all; !posterior.solve(group, all);) {
+  }
+}
+
+void Posterior::assign_first(const Posterior& other) {
+  const std::size_t m = first_.size();
+  origin_ = other.origin_;
+  rows_ = other.rows_;
+  weight_ = other.weight_;
+  square_ = other.square_;
+  correlation_ = other.correlation_;
+  precision_ = other.precision_;
+  noise_ = other.noise_;
+  widths_at_ = 0.0;
+  weights_.clear();
+  gram_.resize(m);
+  for (std::size_t i = 0; i < m; ++i) {
+    std::ranges::copy(other.gram_.row(i), gram_.row(i).begin());
+  }
+  moment_.assign(other.moment_.begin(), other.moment_.begin() + static_cast<std::ptrdiff_t>(m));
+}
+
+double Posterior::distance(const Posterior& other) {
+  const std::size_t m = weights_.size();
+  scratch_.resize(2 * m);
+  const std::span<double> difference{scratch_.data(), m};
+  const std::span<double> product{scratch_.data() + m, m};
+  for (std::size_t i = 0; i < m; ++i) {
+    difference[i] = other.weights_[i] - weights_[i];
+  }
+  difference[0] += other.centre_ - centre_;
+  gram_.multiply(difference, product);
+  const std::span<const double> known = difference;
+  return dot(known, std::span<const double>(product)) / (weight_ * noise());
+}
+
 // The sums may go on growing while the solve is at hand.
 void Posterior::begin_solve(std::span<const std::uint8_t> group) {
   const std::size_t m = gram_.size();
@@ -146,7 +216,7 @@ void Posterior::begin_solve(std::span<const std::uint8_t> group) {
       sums_.row(i)[j] = gram_.row(i)[j] / (scale_[i] * scale_[j]);
       factor_.row(i)[j] = information * sums_.row(i)[j];
     }
-    factor_.row(i)[i] += group[i] == kFlat ? kPosterior.flat : precision_[group[i]];
+    factor_.row(i)[i] += group[i] == FeatureGroup::kFlat ? kPosterior.flat : precision_[group[i]];
   }
   task_ = Task::factorise;
   next_ = 0;
@@ -212,9 +282,9 @@ void Posterior::update_widths(std::span<const std::uint8_t> group) {
   struct Sums {
     double features = 0.0, trace = 0.0, square = 0.0;
   };
-  std::array<Sums, kMostGroups> sums{};
+  std::array<Sums, FeatureGroup::kMost> sums{};
   for (std::size_t i = 0; i < theta_.size(); ++i) {
-    if (group[i] != kFlat) {
+    if (group[i] != FeatureGroup::kFlat) {
       Sums& one = sums.at(group[i]);
       one.features += 1.0;
       one.trace += variance_[i];
@@ -222,10 +292,11 @@ void Posterior::update_widths(std::span<const std::uint8_t> group) {
     }
   }
   informed_ = 1.0;
-  for (std::size_t g = 0; g < kMostGroups; ++g) {
+  for (std::size_t g = 0; g < FeatureGroup::kMost; ++g) {
     const double informed = std::max(0.0, sums.at(g).features - precision_[g] * sums.at(g).trace);
     informed_ += informed;
-    const double weight = g == kKernel ? kPosterior.kernel_hyperprior : kPosterior.hyperprior;
+    const double weight =
+        g == FeatureGroup::kKernel ? kPosterior.kernel_hyperprior : kPosterior.hyperprior;
     precision_[g] = std::clamp((informed + weight) / (sums.at(g).square + weight),
                                kPosterior.least_precision, kPosterior.most_precision);
   }
@@ -300,6 +371,12 @@ void Posterior::change_features(std::size_t first, const Matrix& t) {
   task_ = Task::none;
   errors_.resize(std::min(errors_.size(), first));
   served_at_ = 0.0;
+}
+
+std::size_t Posterior::bytes(std::size_t capacity, std::size_t first) {
+  return (3 * capacity * (capacity + 1) / 2 + 9 * capacity + first * (first + 1) / 2 + 2 * first +
+          FeatureGroup::kMost) *
+         sizeof(double);
 }
 
 void Posterior::visit(Archive& archive) {

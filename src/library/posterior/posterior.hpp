@@ -20,6 +20,14 @@ namespace kelpie {
 enum class Likelihood : std::uint8_t {
   student,  ///< nearly all of its weight, as of an outlier
   huber,    ///< its influence stays bounded, as of a rare manoeuvre
+  gauss,    ///< nothing
+};
+
+/// Features of one group have one prior width.
+struct FeatureGroup {
+  static constexpr std::size_t kMost = 16;      ///< Groups with a width.
+  static constexpr std::uint8_t kKernel = 0;    ///< The kernel's functions.
+  static constexpr std::uint8_t kFlat = kMost;  ///< The constant.
 };
 
 /// The Gaussian posterior of the weights θ of features φ of one axis, y = θᵀφ(x) + noise, in
@@ -33,10 +41,10 @@ enum class Likelihood : std::uint8_t {
 /// - Widths of the prior by evidence: α_g ← (γ_g + h)/(|Dθ|_g² + h), γ_g = n_g − α_g tr Σ_gg, for
 ///   each group g of n_g features; h makes a hyperprior of the width 1.
 /// - Independent samples: τ rows make one sample (ErrorCorrelation).
-/// - Robust likelihood (Likelihood), by the error e of the prediction before learning and
-///   d² = σ² + s², with s² the variance of the prediction by the first features, for where nothing
-///   is known a large error is no outlier: Student's t with ν = 10, w = (ν + 1)/(ν + e²/d²) (Lange
-///   et al. 1989), or Huber's w = 3d/|e| beyond 3d (Huber 1981).
+/// - Likelihood, by the error e of the prediction before learning and d² = σ² + s², with s² the
+///   variance of the prediction by the first features, for where nothing is known a large error is
+///   no outlier: Student's t with ν = 10, w = (ν + 1)/(ν + e²/d²) (Lange et al. 1989), Huber's
+///   w = 3d/|e| beyond 3d (Huber 1981), or Gauss's w = 1.
 ///
 /// A sample costs O(m²) for m features. solve() finds new weights in slices of bounded work: rows
 /// of Cholesky's factor, then, at every tenth more of samples, columns of its inverse for the
@@ -44,23 +52,33 @@ enum class Likelihood : std::uint8_t {
 /// in the constructor only, but for change_features().
 class Posterior {
  public:
-  static constexpr std::size_t kMostGroups = 16;
-  static constexpr std::uint8_t kKernel = 0;          ///< The group of the kernel's functions.
-  static constexpr std::uint8_t kFlat = kMostGroups;  ///< The group of the constant.
-
   /// For at most `capacity` features, the first `first` of which are a model of their own, too.
-  Posterior(std::size_t capacity, std::size_t first, Likelihood likelihood);
+  Posterior(std::size_t capacity, std::size_t first);
+
+  void clear();  ///< Forgets all samples.
 
   /// Learns a sample; no more than ten while the target is a constant. `trust`: weight by the
   /// inputs, 0 to 1. A feature beyond those of the samples before counts as 0 there. Requires
   /// phi[0] = 1 and finite numbers. Cost O(m²).
-  void add(std::span<const double> phi, double y, double trust);
+  void add(std::span<const double> phi, double y, double trust, Likelihood likelihood);
+
+  /// e²/d² of a sample before learning; 0 without a model. Cost O(m).
+  double surprise(std::span<const double> phi, double y);
 
   bool wants_solve() const;  ///< A solve has not ended, or enough samples came since the last.
 
   /// Goes on with a solve for a slice of work, within the budget; true at the end of a solve.
-  /// `group`: of each feature; kFlat for the constant.
+  /// `group`: of each feature; FeatureGroup::kFlat for the constant.
   bool solve(std::span<const std::uint8_t> group, Budget& budget);
+
+  /// Becomes the posterior of another's first features alone, of the same samples, without a model.
+  /// Requires a capacity of as many features.
+  void assign_first(const Posterior& other);
+
+  /// Mean square of the difference of what this posterior and `other`, of the same features, say at
+  /// the inputs of this posterior's samples, in variances σ² of the noise (Cook 1977). Requires
+  /// models of both. Cost O(m²).
+  double distance(const Posterior& other);
 
   bool ready() const { return !weights_.empty(); }  ///< A solve has ended.
   /// θ, target unit per unit of the feature, for deviations from centre(); of the features at the
@@ -87,6 +105,8 @@ class Posterior {
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
+  static std::size_t bytes(std::size_t capacity, std::size_t first);  ///< Memory in bytes.
+
  private:
   enum class Task : std::uint8_t { none, factorise, invert };
 
@@ -101,7 +121,6 @@ class Posterior {
   void update_noise();
   void serve();
 
-  Likelihood likelihood_;
   double origin_ = 0.0;         ///< the first target: sums hold differences from it
   Triangle gram_;               ///< A
   RoomyVector<double> moment_;  ///< b
@@ -142,5 +161,8 @@ class Posterior {
   double centre_ = 0.0, spread_ = 1.0;  ///< of the targets
   double served_at_ = 0.0;              ///< rows
 };
+
+/// Solves at once, without a budget. Cost O(m³).
+void settle(Posterior& posterior, std::span<const std::uint8_t> group);
 
 }  // namespace kelpie

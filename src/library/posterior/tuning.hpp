@@ -9,7 +9,7 @@ namespace kelpie {
 
 /// Constants of the posterior, with unit and source.
 inline constexpr struct PosteriorTuning {
-  double huber = 3.0;     ///< deviations of an error that bound the influence of a sample; by hand
+  double huber = 3.0;     ///< deviations of an error that bound its influence; by hand
   double freedom = 10.0;  ///< ν of Student's t (Lange et al. 1989); chosen on ../data/vehicles
   double most_deviations = 4.0;     ///< of an error in τ; by hand
   double first_rows = 10.0;         ///< rows before the first solve; by hand
@@ -30,8 +30,8 @@ inline constexpr struct PosteriorTuning {
   double gamma = 0.1;     ///< of κ on six inputs in deviations; chosen on ../data/vehicles
   double novelty = 0.02;  ///< squared left-over norm of a new centre; as above
   /// Shares of posterior, terms, svr and mean before the first losses; by hand.
-  std::array<double, 5> first_shares{0.2, 0.1, 0.4, 0.15, 0.15};
-  std::array<double, 5> first_shares_of_known{0.3, 0.15, 0.45, 0.05, 0.05};  ///< likewise
+  std::array<double, 4> first_shares{0.3, 0.4, 0.15, 0.15};
+  std::array<double, 4> first_shares_of_known{0.45, 0.45, 0.05, 0.05};  ///< likewise
   double block = 2.0;            ///< independent samples of a block of losses; by hand
   int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand
   std::int64_t slice = 300'000;  ///< numbers of a solve in one update; by hand
@@ -39,6 +39,16 @@ inline constexpr struct PosteriorTuning {
   double far = 10.0;        ///< deviations of a velocity beyond which a row counts less; by hand
   double garbage_s = 36.0;  ///< longest garbage of a sensor [s], as for the committee's guard
   double longest_step_s = 2.0;  ///< of two rows without a gap [s]; by hand
+  double surprise = 16.0;       ///< e²/(σ² + s²) beyond which a row waits; by hand
+  double calm_s = 2.0;          ///< after which rows that wait are judged [s]; by hand
+  double most_distance = 0.5;   ///< Cook's, of rows that are learned; chosen on garbage of ../data
+  double coherence = 0.6;       ///< Σ e e'/Σ e² of neighbours, beyond that of two equal; by hand
+  double first_restart_s = 10.0, restart_s = 20.0;  ///< [s]; by hand
+  double nats = 10.0, nats_per_row = 0.7;           ///< of a restart that wins; by hand
+  double most_ratio = 2.0;                          ///< logarithm of a ratio of errors; by hand
+  double least_error = 0.02;     ///< square of an error, in variances of the noise; by hand
+  double most_correlated = 0.2;  ///< τ of a restart, per row; by hand
+  int rows_per_update = 4;       ///< rows learned later; by hand
 } kPosterior;
 
 }  // namespace kelpie

@@ -100,9 +100,20 @@ TEST(PosteriorLearner, LearnsTheVehicleAndItsCoefficients) {
   }
 }
 
-// Put away and taken up again at random moments, also while the kernel has new units.
+// Inputs and targets of another unit, as of a driver that was set up anew.
+void spoil(PlanarDrive& drive, std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < to; ++i) {
+    drive.x[i][0] *= 1000.0;
+    drive.y[i][0] *= 1000.0;
+  }
+}
+
+// Put away and taken up again at random moments, also while the kernel has new units, rows of
+// garbage wait, and all is forgotten.
 TEST(PosteriorLearner, GoesOnToTheLastBit) {
-  const PlanarDrive drive = noisy_drive(500);
+  PlanarDrive drive = noisy_drive(500);
+  spoil(drive, 0, 20);
+  spoil(drive, 300, 320);
   RandomStream random(9, "stops");
   DynamicsModel whole = new_model(60);
   DynamicsModel broken = new_model(60);
@@ -250,6 +261,86 @@ TEST(PosteriorLearner, SetsOffAfterARest) {
     learn(model, drive, 0, drive.x.size());
     EXPECT_LT(error_elsewhere(model), 0.25) << noise;
   }
+}
+
+TEST(PosteriorLearner, DropsABurstOfGarbage) {
+  const PlanarDrive clean = noisy_drive(1200, 1.0);
+  PlanarDrive drive = clean;
+  spoil(drive, 700, 780);
+  DynamicsModel model = new_model();
+  learn(model, drive, 0, drive.x.size());
+  DynamicsModel without = new_model();
+  learn(without, clean, 0, 700);
+  learn(without, clean, 780, clean.x.size());
+  EXPECT_LT(error_elsewhere(model), 1.1 * error_elsewhere(without));
+  EXPECT_GE(model.axis(0).status().tally.implausible, 70);
+  EXPECT_EQ(model.axis(0).status().tally.changes, 0);
+}
+
+TEST(PosteriorLearner, ForgetsGarbageAtTheStart) {
+  PlanarDrive drive = noisy_drive(600, 1.0);
+  RandomStream random(4, "garbage");
+  for (std::size_t i = 0; i < 60; ++i) {
+    for (double& one : drive.x[i]) {
+      one = 1e6 * random.normal();
+    }
+    for (double& one : drive.y[i]) {
+      one = 1e6 * random.normal();
+    }
+  }
+  DynamicsModel model = new_model();
+  learn(model, drive, 0, drive.x.size());
+  EXPECT_LT(error_elsewhere(model), 0.1);
+}
+
+// Full ahead for two seconds, every two minutes: no garbage, for nothing known is contradicted.
+TEST(PosteriorLearner, LearnsRareManoeuvres) {
+  PlanarDrive drive = noisy_drive(4000, 1.0);
+  RandomStream random(5, "noise");
+  const auto is_rare = [](std::size_t i) { return i % 480 < 8; };
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    for (std::size_t k = 2; k < 4; ++k) {
+      drive.x[i][k] = is_rare(i) ? 30.0 : 0.1 * drive.x[i][k];
+    }
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      drive.y[i][axis] = PlanarDrive::accelerations(drive.x[i])[axis] + 0.002 * random.normal();
+    }
+  }
+  DynamicsModel model = new_model();
+  learn(model, drive, 0, drive.x.size());
+  double wrong = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    if (is_rare(i)) {
+      std::array<double, 2> said{};
+      model.predict(drive.x[i], said);
+      wrong += std::pow(said[0] - drive.y[i][0], 2);
+      size += std::pow(drive.y[i][0], 2);
+    }
+  }
+  EXPECT_LT(std::sqrt(wrong / size), 0.1);
+}
+
+// What surprises for 36 s is no garbage but another vehicle; a lone row in between, which changes
+// nothing, makes the 36 s begin anew.
+TEST(PosteriorLearner, BelievesAnotherVehicle) {
+  PlanarDrive drive = noisy_drive(1600, 1.0);
+  for (std::size_t i = 1000; i < drive.x.size(); ++i) {
+    drive.y[i][0] *= -1.0;
+  }
+  DynamicsModel model = new_model();
+  int changes = 0;
+  double since = 0.0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    learn(model, drive, i, i + 1);
+    if (model.decisions()[0].changed) {
+      ++changes;
+      since = model.decisions()[0].changed_since;
+    }
+  }
+  EXPECT_EQ(changes, 1);
+  EXPECT_GE(since, drive.t[1000]);
+  EXPECT_LE(since, drive.t[1000] + 40.0);
 }
 
 TEST(PosteriorLearner, BeginsWithAKnownVehicle) {

@@ -20,7 +20,7 @@ namespace {
 // The constant, three features that matter and three that don't.
 constexpr std::size_t kFeatures = 7;
 constexpr std::array<double, kFeatures> kTruth{5.0, 2.0, -1.0, 0.5, 0.0, 0.0, 0.0};
-constexpr std::array<std::uint8_t, kFeatures> kGroups{Posterior::kFlat, 1, 1, 1, 2, 2, 2};
+constexpr std::array<std::uint8_t, kFeatures> kGroups{FeatureGroup::kFlat, 1, 1, 1, 2, 2, 2};
 
 struct Row {
   std::vector<double> phi;
@@ -50,14 +50,14 @@ void solve(Posterior& posterior) {
 }
 
 void learn(Posterior& posterior, const Row& row) {
-  posterior.add(row.phi, row.y, 1.0);
+  posterior.add(row.phi, row.y, 1.0, Likelihood::student);
   if (posterior.wants_solve()) {
     solve(posterior);
   }
 }
 
 Posterior learned(const std::vector<Row>& rows, std::size_t first = 4) {
-  Posterior posterior(kFeatures, first, Likelihood::student);
+  Posterior posterior(kFeatures, first);
   for (const Row& row : rows) {
     learn(posterior, row);
   }
@@ -106,7 +106,7 @@ TEST(Posterior, PredictsBetterThanLeastSquaresOfFewSamples) {
 
 // At rest a target may be a constant to the last bit; the vehicle learns when it sets off.
 TEST(Posterior, LearnsAfterAConstantTarget) {
-  Posterior posterior(kFeatures, 4, Likelihood::student);
+  Posterior posterior(kFeatures, 4);
   for (int i = 0; i < 100; ++i) {
     learn(posterior, {{1, 0, 0, 0, 0, 0, 0}, 0.7});
   }
@@ -151,7 +151,7 @@ TEST(Posterior, OutliersHardlyMoveIt) {
 // A command that steps once in a hundred rows, far beyond its usual size, is no outlier.
 TEST(Posterior, LearnsRareManoeuvres) {
   RandomStream random(11, "rare");
-  Posterior posterior(kFeatures, 4, Likelihood::student);
+  Posterior posterior(kFeatures, 4);
   for (int i = 0; i < 2000; ++i) {
     Row row{{1.0, random.normal(), i % 100 == 99 ? 30.0 : 0.1 * random.normal(), 0, 0, 0, 0}, 0.0};
     row.y = row.phi[1] + 2.0 * row.phi[2] + 0.1 * random.normal();
@@ -166,8 +166,8 @@ TEST(Posterior, SlicesLeaveTheResultsUnchanged) {
   Posterior sliced = whole;
   ASSERT_EQ(testing::saved(whole), testing::saved(sliced));
   for (const Row& row : rows(5, 30, 0.3)) {
-    whole.add(row.phi, row.y, 1.0);
-    sliced.add(row.phi, row.y, 1.0);
+    whole.add(row.phi, row.y, 1.0, Likelihood::student);
+    sliced.add(row.phi, row.y, 1.0, Likelihood::student);
   }
   solve(whole);
   int slices = 0;
@@ -182,8 +182,8 @@ TEST(Posterior, SlicesLeaveTheResultsUnchanged) {
 // Neighbours in time say the same: errors that go on for ten rows are one sample's.
 TEST(Posterior, RowsAlikeAreNoFurtherEvidence) {
   const std::vector<Row> data = rows(6, 300, 0.5);
-  Posterior once(kFeatures, 4, Likelihood::student);
-  Posterior repeated(kFeatures, 4, Likelihood::student);
+  Posterior once(kFeatures, 4);
+  Posterior repeated(kFeatures, 4);
   for (const Row& row : data) {
     learn(once, row);
     for (int i = 0; i < 10; ++i) {
@@ -225,7 +225,7 @@ TEST(Posterior, FollowsAChangeOfItsFeatures) {
   const Posterior old = learned(data);
   Posterior moved = old;
   moved.change_features(4, t);
-  Posterior anew(kFeatures, 4, Likelihood::student);
+  Posterior anew(kFeatures, 4);
   for (const Row& row : data) {
     learn(anew, {mapped(row.phi), row.y});
   }
@@ -242,11 +242,11 @@ TEST(Posterior, FollowsAChangeOfItsFeatures) {
 
 TEST(Posterior, GoesOnFromASavedState) {
   const std::vector<Row> data = rows(9, 250, 0.3);
-  const auto make = [] { return Posterior(kFeatures, 4, Likelihood::student); };
+  const auto make = [] { return Posterior(kFeatures, 4); };
   testing::expect_same_life(
       make, data.size(), [](std::size_t i) { return i % 13 == 5; },
       [&](Posterior& posterior, std::size_t i) {
-        posterior.add(data[i].phi, data[i].y, 1.0);
+        posterior.add(data[i].phi, data[i].y, 1.0, Likelihood::student);
         Budget one_step(1);  // a solve is at hand at most stops
         if (posterior.wants_solve()) {
           posterior.solve(kGroups, one_step);

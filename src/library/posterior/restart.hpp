@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kelpie/core/archive.hpp"
+#include "posterior/posterior.hpp"
+#include "posterior/tuning.hpp"
+
+namespace kelpie {
+
+/// A posterior of the terms alone that learns the rows since a later row, against the live
+/// posterior of all rows. The evidence for the restart is the logarithm of the ratio of both
+/// errors, at most 2 a row, in independent samples, since it was 0 last (CUSUM: Page 1954).
+/// Allocates in the constructor only.
+class Restart {
+ public:
+  explicit Restart(std::size_t terms) : terms_(terms), young_(terms, terms) {}
+
+  /// Begins with the row of this number, at the time t; not an alternative any more at `until_s`.
+  void begin(std::size_t row, double t, double until_s);
+  void end() { until_s_ = begin_s_; }
+
+  bool runs(double t) const { return t < until_s_; }
+  std::size_t first_row() const { return row_; }
+  double begin_s() const { return begin_s_; }
+
+  /// Scores what both posteriors say of a row, then learns the row. `phi`: its features, those of
+  /// the terms first.
+  void update(std::span<const double> phi, double y, double trust, const Posterior& live,
+              std::span<const std::uint8_t> group);
+
+  /// Whether the rows since the begin are those of another vehicle, or the first after garbage:
+  /// the evidence is clear, and the restart as old as the live posterior, of `learned_s` seconds,
+  /// or older than garbage lasts.
+  bool wins(double t, double learned_s) const;
+
+  bool leads() const { return evidence_ > kPosterior.nats_per_row; }  ///< Evidence is left.
+
+  void forget_evidence() { evidence_ = sum_ = rows_ = 0.0; }
+
+  void visit(Archive& archive);  ///< core/archive.hpp
+
+  static std::size_t bytes(std::size_t terms) { return Posterior::bytes(terms, terms); }
+
+ private:
+  std::size_t terms_;
+  Posterior young_;
+  std::size_t row_ = 0;
+  double begin_s_ = 0.0, until_s_ = 0.0;            ///< [s]
+  double scored_ = 0.0;                             ///< rows
+  double evidence_ = 0.0, sum_ = 0.0, rows_ = 0.0;  ///< [nat]; since the evidence was 0
+};
+
+}  // namespace kelpie

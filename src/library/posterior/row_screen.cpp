@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "posterior/row_screen.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "posterior/tuning.hpp"
+
+namespace kelpie {
+namespace {
+
+auto runs_at(double t) {
+  return [t](const Restart& one) { return one.runs(t); };
+}
+
+}  // namespace
+
+RowScreen::RowScreen(std::size_t inputs, std::size_t terms)
+    : rows_(inputs, kRows),
+      restarts_{Restart(terms), Restart(terms), Restart(terms), Restart(terms)},
+      before_(terms, terms),
+      after_(terms, terms),
+      phi_(terms) {}
+
+void RowScreen::add(const RecentRows::Row& row, const Features& features,
+                    std::span<const double> phi, Posterior& live) {
+  first_s_ = begun_ ? first_s_ : row.t;
+  const double step = begun_ ? std::clamp(row.t - last_s_, 0.0, kPosterior.longest_step_s) : 0.0;
+  begun_ = true;
+  last_s_ = row.t;
+  won_.reset();
+  dropped_ = 0;
+  if (!waiting() && next_ == rows_.end() && std::ranges::none_of(restarts_, runs_at(row.t))) {
+    rows_.clear();
+  }
+  last_waits_ = live.surprise(phi, row.left) > kPosterior.surprise;
+  learned_s_ += last_waits_ ? 0.0 : step;
+  begin_restarts(row.t, last_waits_);
+  if (last_waits_) {
+    waits_s_ = waiting() ? waits_s_ : row.t;
+    waited_s_ = row.t;
+  }
+  const bool waits = waiting() || last_waits_;
+  rows_.push(row, last_waits_ ? State::waits : State::due);
+  waits_since_ = !waits ? rows_.end() : std::min(waits_since_, rows_.end() - 1);
+  run_restarts(row, features, phi, live);
+  const bool is_crowded = rows_.full() && waits_since_ == rows_.begin();
+  if (waiting() && (row.t - waits_s_ > kPosterior.garbage_s || is_crowded)) {
+    release(State::due);
+  } else if (waiting() && row.t - waited_s_ > kPosterior.calm_s) {
+    judge(features, live);
+  }
+}
+
+// Before the row of the time t is kept.
+void RowScreen::begin_restarts(double t, bool waits) {
+  if (waits && !waiting() && !(restarts_[kRestarts].runs(t) && restarts_[kRestarts].leads())) {
+    restarts_[kRestarts].begin(rows_.end(), t, t + 2.0 * kPosterior.garbage_s);
+  }
+  const double due_s = kPosterior.first_restart_s * std::exp2(static_cast<double>(started_));
+  if (started_ < kRestarts && t - first_s_ >= due_s) {
+    restarts_.at(started_++).begin(rows_.end(), t, t + 1.5 * due_s + kPosterior.restart_s);
+  }
+}
+
+void RowScreen::run_restarts(const RecentRows::Row& row, const Features& features,
+                             std::span<const double> phi, const Posterior& live) {
+  const double trust = features.trust(row.x);
+  for (Restart& one : restarts_) {
+    if (one.runs(row.t)) {
+      one.update(phi, row.left, trust, live, features.groups());
+    }
+  }
+  const auto winner =
+      std::ranges::find_if(restarts_.rbegin(), restarts_.rend(), [&](const auto& one) {
+        return one.runs(row.t) && one.first_row() >= rows_.begin() && one.wins(row.t, learned_s_);
+      });
+  if (winner == restarts_.rend()) {
+    return;
+  }
+  won_ = {.since_s = winner->begin_s(), .is_change = winner == restarts_.rbegin()};
+  learned_s_ = row.t - won_->since_s;
+  next_ = winner->first_row();
+  for (std::size_t i = rows_.begin(); i < rows_.end(); ++i) {
+    rows_.state(i) = i < next_ ? State::done : State::due;
+  }
+  waits_since_ = rows_.end();
+  for (Restart& one : restarts_) {
+    one.begin_s() > won_->since_s ? one.forget_evidence() : one.end();
+  }
+  restarts_[kRestarts].end();
+}
+
+// By the posteriors of the terms, which are small.
+void RowScreen::judge(const Features& features, const Posterior& live) {
+  before_.assign_first(live);
+  for (int i = 0; i < kPosterior.young_rounds; ++i) {
+    settle(before_, features.groups());
+  }
+  after_ = before_;
+  double squares = 0.0, products = 0.0, last = 0.0;
+  for (std::size_t i = waits_since_; i < rows_.end(); ++i) {
+    if (rows_.state(i) == State::waits) {
+      const RecentRows::Row row = rows_[i];
+      features.first(row.x, phi_);
+      const double error = row.left - before_.value(phi_);
+      squares += error * error;
+      products += error * last;
+      last = error;
+      after_.add(phi_, row.left, features.trust(row.x), Likelihood::gauss);
+    }
+  }
+  settle(after_, features.groups());
+  const bool contradicts = before_.distance(after_) > kPosterior.most_distance;
+  const bool is_coherent = products > kPosterior.coherence * squares;
+  release(contradicts ? State::done : is_coherent ? State::due_rare : State::due);
+}
+
+void RowScreen::release(State state) {
+  for (std::size_t i = waits_since_; i < rows_.end(); ++i) {
+    if (rows_.state(i) == State::waits) {
+      rows_.state(i) = state;
+      dropped_ += state == State::done ? 1 : 0;
+    }
+  }
+  next_ = std::min(next_, waits_since_);
+  waits_since_ = rows_.end();
+  if (state != State::done) {
+    restarts_[kRestarts].end();  // no other vehicle: nothing known is contradicted
+  }
+}
+
+std::optional<RowScreen::Due> RowScreen::next() {
+  for (next_ = std::max(next_, rows_.begin()); next_ < rows_.end(); ++next_) {
+    State& state = rows_.state(next_);
+    if (state == State::due || state == State::due_rare) {
+      const bool is_rare = state == State::due_rare;
+      state = State::done;
+      return Due{rows_[next_++], is_rare ? Likelihood::huber : Likelihood::student};
+    }
+  }
+  return {};
+}
+
+void RowScreen::visit(Archive& archive) {
+  archive.part("rows", rows_);
+  archive.whole(next_, 0, rows_.end());
+  archive.whole(waits_since_, 0, rows_.end());
+  for (double* const one : {&waits_s_, &waited_s_, &first_s_, &last_s_, &learned_s_}) {
+    archive.number(*one);
+  }
+  archive.flag(last_waits_);
+  archive.flag(begun_);
+  archive.whole(started_, 0, kRestarts);
+  for (Restart& one : restarts_) {
+    archive.part("restart", one);
+  }
+}
+
+std::size_t RowScreen::bytes(std::size_t inputs, std::size_t terms) {
+  return RecentRows::bytes(inputs, kRows) + (kRestarts + 1) * Restart::bytes(terms) +
+         2 * Posterior::bytes(terms, terms) + terms * sizeof(double);
+}
+
+}  // namespace kelpie
