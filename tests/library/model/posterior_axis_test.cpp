@@ -159,7 +159,7 @@ TEST(PosteriorLearner, TakesTheMemoryThatWasTold) {
   ModelSettings three = ModelSettings::from_preset("default", 3);
   three.assign("learner", "posterior");
   const std::size_t told = DynamicsModel::bytes(inputs, three);
-  EXPECT_LT(told, 45'000'000U);
+  EXPECT_LT(told, 35'000'000U);
   const std::size_t before = testing::allocated_bytes;
   const DynamicsModel model(inputs, targets, three);
   const auto taken = static_cast<double>(testing::allocated_bytes - before);
