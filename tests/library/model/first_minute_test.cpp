@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "kelpie/core/random.hpp"
 #include "kelpie/model/dynamics_model.hpp"
@@ -56,13 +58,15 @@ class Vehicle {
 };
 
 // The mean R² of three axes and some vehicles on other drives of 300 s, after so many seconds.
-double mean_r_squared_after(double seconds, std::uint64_t vehicles) {
+double mean_r_squared_after(double seconds, std::uint64_t vehicles,
+                            std::string_view learner = "committee") {
+  ModelSettings settings = ModelSettings::from_preset("default", 3);
+  settings.assign("learner", std::string(learner));
   double sum = 0.0;
   for (std::uint64_t seed = 0; seed < vehicles; ++seed) {
     Vehicle vehicle(seed);
     RandomStream noise(seed, "noise");
-    DynamicsModel model({"u", "v", "r", "n1", "n2", "n3"}, {"udot", "vdot", "rdot"},
-                        ModelSettings::from_preset("default", 3));
+    DynamicsModel model({"u", "v", "r", "n1", "n2", "n3"}, {"udot", "vdot", "rdot"}, settings);
     for (double t = 0.0; t < seconds; t += kStepS) {
       vehicle.step(t);
       std::array<double, 3> y = vehicle.y;
@@ -96,6 +100,11 @@ TEST(FirstMinute, AVehicleLinearInItsTermsIsKnown) {
 TEST(MeasuredFirstMinute, SixVehiclesLinearInTheirTermsAreKnown) {
   EXPECT_GT(mean_r_squared_after(30.0, 6), 0.88);
   EXPECT_GT(mean_r_squared_after(60.0, 6), 0.988);
+}
+
+TEST(MeasuredFirstMinute, SixVehiclesAreKnownToThePosterior) {
+  EXPECT_GT(mean_r_squared_after(30.0, 6, "posterior"), 0.90);
+  EXPECT_GT(mean_r_squared_after(60.0, 6, "posterior"), 0.985);
 }
 
 }  // namespace
