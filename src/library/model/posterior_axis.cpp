@@ -298,7 +298,8 @@ void PosteriorAxis::set_past_models(std::vector<StoredPastModel> models) {
   require(models.empty(), "learner", "'posterior' keeps no past models; 'committee' does");
 }
 
-void PosteriorAxis::resume_from(const AxisScaling&, const FunctionMix&, double) {
+void PosteriorAxis::resume_from(const AxisScaling& /*scaling*/, const FunctionMix& /*said*/,
+                                double /*t*/) {
   throw InputError("learner",
                    "'posterior' goes on from a checkpoint or a saved state, not from a model");
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "posterior/posterior.hpp"
 #include "posterior/tuning.hpp"
@@ -29,9 +30,9 @@ std::array<double, 3> degrees(const TermSet& terms, std::size_t k, std::size_t i
 
 }  // namespace
 
-Features::Features(std::size_t inputs, const TermSet& terms, std::span<const std::size_t> states,
+Features::Features(std::size_t inputs, TermSet terms, std::span<const std::size_t> states,
                    std::size_t centres)
-    : terms_(terms),
+    : terms_(std::move(terms)),
       states_(states.begin(), states.end()),
       basis_(kPosterior.gamma * std::sqrt(6.0 / static_cast<double>(inputs)), inputs, centres),
       units_{std::vector<double>(inputs), Matrix(inputs, inputs)},

@@ -26,7 +26,7 @@ namespace kelpie {
 class Features {
  public:
   /// `states`: inputs that are velocities; `centres`: the most.
-  Features(std::size_t inputs, const TermSet& terms, std::span<const std::size_t> states,
+  Features(std::size_t inputs, TermSet terms, std::span<const std::size_t> states,
            std::size_t centres);
 
   std::size_t size() const { return terms_end() + basis_.size(); }
