@@ -140,7 +140,6 @@ void PosteriorAxis::learn(const RowScreen::Due& due) {
       change_scale();
     }
   }
-  features_.evaluate(x);
   posterior_.add(features_.learn(x), left, trust, due.likelihood);
   know_centres();
   ++tally_.accepted;

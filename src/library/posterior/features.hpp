@@ -46,9 +46,9 @@ class Features {
   /// The first terms_end() features.
   void first(std::span<const double> x, std::span<double> phi) const;
 
-  /// φ(x), of size() numbers.
+  /// φ(x), of size() numbers. At no cost for the x of the last call, while nothing has changed.
   std::span<const double> evaluate(std::span<const double> x);
-  /// φ(x), x as in evaluate() last. Where x is novel and a place is free, x becomes a centre first.
+  /// φ(x). Where x is novel and a place is free, x becomes a centre first.
   std::span<const double> learn(std::span<const double> x);
 
   void clear();  ///< Forgets all samples. Allocates.
@@ -64,8 +64,10 @@ class Features {
   std::vector<std::size_t> states_;
   KernelBasis basis_;
   std::vector<std::uint8_t> groups_;
-  std::vector<double> phi_;  ///< of the last sample
-  double novelty_ = 0.0;     ///< of the last sample
+  std::vector<double> phi_;   ///< of the last sample
+  double novelty_ = 0.0;      ///< of the last sample
+  std::vector<double> last_;  ///< the last sample
+  bool is_current_ = false;   ///< whether phi_ holds what last_ has by now
   InputScaling units_;
   double rows_ = 0.0, weight_ = 0.0, weight_at_units_ = 0.0;
   std::vector<double> mean_, scatter_;

@@ -26,11 +26,6 @@ std::vector<double> sample(RandomStream& random, double size = 1.0) {
   return {size * random.normal(), size * random.normal(), random.uniform(-1.0, 1.0), 0.5};
 }
 
-std::span<const double> learn(Features& features, std::span<const double> x) {
-  features.evaluate(x);
-  return features.learn(x);
-}
-
 TEST(Features, TermsAlikeShareAGroup) {
   const Features all = features();
   const auto group_of = [&](std::string_view term) {
@@ -66,7 +61,7 @@ TEST(Features, CentresAreFewAndNovel) {
   for (int i = 0; i < 400; ++i) {
     const std::vector<double> x = sample(random);
     all.observe(x, 1.0);
-    const std::span<const double> phi = learn(all, x);
+    const std::span<const double> phi = all.learn(x);
     EXPECT_EQ(phi.size(), all.size());
     EXPECT_EQ(phi.front(), 1.0);
   }
@@ -87,7 +82,7 @@ TEST(Features, NewUnitsComeWithAMap) {
       EXPECT_EQ(t->rows() == 0 ? 0 : t->columns(), all.basis().size());
       ++moves;
     }
-    learn(all, x);
+    all.learn(x);
   }
   EXPECT_GE(moves, 3U);
   EXPECT_LT(moves, 20U);
@@ -104,7 +99,7 @@ TEST(Features, GoOnFromASavedState) {
                             [](std::size_t i) { return i % 20 == 9; },
                             [&](Features& all, std::size_t i) {
                               all.observe(rows[i], all.trust(rows[i]));
-                              learn(all, rows[i]);
+                              all.learn(rows[i]);
                             });
 }
 
