@@ -31,6 +31,18 @@ CLI::Validator no_assignment() {
           ""};
 }
 
+// With the file of the model where the error is about a column that the model takes.
+InputError of_model(const InputError& error, const TrainedModel& model, const std::string& file) {
+  std::vector<std::string> columns = model.target_names();
+  columns.insert(columns.end(), model.input_names.begin(), model.input_names.end());
+  columns.push_back(model.alignment.water.heading);
+  const Place& place = error.place();
+  const bool is_taken =
+      !place.file.empty() && !place.field.empty() && std::ranges::count(columns, place.field) > 0;
+  return is_taken ? InputError(place, error.message() + "; a column of the model in " + file)
+                  : error;
+}
+
 }  // namespace
 
 CLI::Option* add_file(CLI::App* command, const std::string& name, std::string& file,
@@ -83,15 +95,15 @@ void add_absent(CLI::App& app, const std::string& name, const std::string& where
   });
 }
 
-InputError of_model(const InputError& error, const TrainedModel& model, const std::string& file) {
-  std::vector<std::string> columns = model.target_names();
-  columns.insert(columns.end(), model.input_names.begin(), model.input_names.end());
-  columns.push_back(model.alignment.water.heading);
-  const Place& place = error.place();
-  const bool is_taken =
-      !place.file.empty() && !place.field.empty() && std::ranges::count(columns, place.field) > 0;
-  return is_taken ? InputError(place, error.message() + "; a column of the model in " + file)
-                  : error;
+void with_given_model(const std::string& file,
+                      const std::function<void(TrainedModel&, const format::ModelInfo&)>& run) {
+  format::ModelInfo info;
+  TrainedModel model = read_given_model(file, &info);
+  try {
+    run(model, info);
+  } catch (const InputError& error) {
+    throw of_model(error, model, file);
+  }
 }
 
 void add_examples(CLI::App* command, const std::string& first, const std::string& second) {

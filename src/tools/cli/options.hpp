@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -53,9 +54,10 @@ void add_model(CLI::App* command, const std::string& name, std::string& model);
 /// InputError as format::read_model() does; a missing file is told with the command that makes one.
 TrainedModel read_given_model(const std::string& model, format::ModelInfo* info = nullptr);
 
-/// The error of a log, with the `file` of `model` where the error is about a column that `model`
-/// takes.
-InputError of_model(const InputError& error, const TrainedModel& model, const std::string& file);
+/// Calls `run` with the model of a file, as read_given_model(). An InputError of a log about a
+/// column that the model takes names the file of the model, too.
+void with_given_model(const std::string& file,
+                      const std::function<void(TrainedModel&, const format::ModelInfo&)>& run);
 
 /// The option --out of a folder with a default.
 void add_out(CLI::App* command, std::string& folder, const std::string& meaning);

@@ -317,13 +317,9 @@ void predict_log(const PredictArguments& options, TrainedModel& model,
 
 void predict(const PredictArguments& options) {
   check_output("--out", options.out, {options.source.path, options.model, options.config});
-  format::ModelInfo info;
-  TrainedModel model = read_given_model(options.model, &info);
-  try {
+  with_given_model(options.model, [&](TrainedModel& model, const format::ModelInfo& info) {
     predict_log(options, model, info);
-  } catch (const InputError& error) {
-    throw of_model(error, model, options.model);
-  }
+  });
 }
 
 }  // namespace

@@ -264,13 +264,9 @@ void rollout(const RolloutArguments& options) {
   }
   constexpr std::size_t kMostHorizons = 100;
   require(options.horizons.size() <= kMostHorizons, "--horizons", "are at most 100");
-  format::ModelInfo info;
-  TrainedModel model = read_given_model(options.model, &info);
-  try {
+  with_given_model(options.model, [&](TrainedModel& model, const format::ModelInfo& info) {
     roll(options, model, info);
-  } catch (const InputError& error) {
-    throw of_model(error, model, options.model);
-  }
+  });
 }
 
 }  // namespace
