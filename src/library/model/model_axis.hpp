@@ -41,8 +41,8 @@ class ModelAxis : public OnlineRegressor {
   virtual Snapshot trained(std::string name) const = 0;  ///< DynamicsAxis::trained()
 
   /// DynamicsAxis::apply_change(), of a learner that the ChangeMonitor serves.
-  virtual void apply_change(std::span<const CommandGain>, std::span<const double>,
-                            const Decision&) {}
+  virtual void apply_change(std::span<const CommandGain> /*gains*/,
+                            std::span<const double> /*step*/, const Decision& /*news*/) {}
   virtual void expect_vehicle(std::vector<double> coefficients) = 0;
   virtual std::vector<StoredPastModel> past_models() const { return {}; }
   virtual void set_past_models(std::vector<StoredPastModel> models) = 0;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;  // <CLI/CLI.hpp> takes 7 s to compile, and programs need not know the class
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11's
+class App;       // <CLI/CLI.hpp> takes 7 s to compile, and programs need not know the class
 }
 
 namespace kelpie::cli {
