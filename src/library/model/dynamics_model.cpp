@@ -71,7 +71,7 @@ bool still_named(std::span<const Finding> findings, std::size_t command, double 
 
 // Whether a committee reacts to changes on every axis.
 bool adapts(const ModelSettings& settings) {
-  return settings.shared.learner == LearnerKind::committee &&
+  return settings.shared.learner != LearnerKind::svr &&
          std::ranges::all_of(settings.axes, [](const OnlineSvrSettings& axis) {
            return axis.adapt == AdaptRule::challenger;
          });

@@ -71,6 +71,7 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   }
   Decision decision{.prediction = {.value = predict(x)}, .had_model = posterior_.ready()};
   uncertainty_.score(decision, y, t);
+  trusted_last_ = features_.trust(x) == 1.0;
   const RecentRows::Row row{.x = x, .y = y, .left = y - expected(x), .t = t};
   screen_.add(row, features_, features_.evaluate(x), posterior_);
   if (const std::optional<RowScreen::Won> won = screen_.won()) {
@@ -90,7 +91,6 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
     fits ? serve() : change_scale();
     decision.published = true;
   }
-  trusted_last_ = trusted_last_ && !screen_.last_waits();
   decision.verdict = screen_.last_waits() ? Verdict::held_back : Verdict::accepted;
   tally_.implausible += screen_.dropped();
   return decision;
@@ -115,6 +115,35 @@ void PosteriorAxis::begin_anew() {
   }
 }
 
+// What was learned becomes what would have been learned of the changed vehicle.
+void PosteriorAxis::apply_change(std::span<const CommandGain> gains, std::span<const double> step,
+                                 const Decision& news) {
+  tally_.changes += news.changed ? 1 : 0;
+  tally_.withdrawn += news.withdrawn ? 1 : 0;
+  if (!has_scale_) {
+    return;
+  }
+  TermWeights told(terms().size() + 1);
+  std::ranges::fill(told, 0.0);
+  if (gains.empty()) {
+    std::ranges::copy(step.first(step.size() - 1), told.begin() + 1);
+    told[0] = step.back();
+  } else {
+    for (std::size_t k = 1; k < told.size(); ++k) {
+      const double weight = posterior_.weights()[k] + known(k);
+      told[k] = (term_gain(terms(), k - 1, gains) - 1.0) * weight;
+    }
+  }
+  posterior_.tell_anew(as_span(told));
+  if (news.changed) {
+    posterior_.fade(kPosterior.kept);
+    screen_.believe_change(news.changed_since);
+  }
+  mixture_.tell_anew(as_span(in_scale(told, told[0] / scaling_.target.scale)));
+  serve();
+  mixture_.freeze();
+}
+
 // Garbage ends; velocities that stay far away are those of a vehicle that has set off.
 double PosteriorAxis::trust(std::span<const double> x, double t) {
   const double trust = features_.trust(x);
@@ -131,7 +160,6 @@ void PosteriorAxis::learn(const RowScreen::Due& due) {
                     block_length());
   }
   const double trust = this->trust(x, t);
-  trusted_last_ = trust == 1.0;
   if (const std::optional<Matrix> map = features_.observe(x, trust)) {
     posterior_.change_features(features_.terms_end(), *map);
     known_.samples.clear();
@@ -177,13 +205,22 @@ void PosteriorAxis::change_scale() {
 }
 
 // Weights of the terms by scaled terms, the last number the bias.
-PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta) const {
-  TermWeights weights(theta.size());
-  for (std::size_t k = 1; k < theta.size(); ++k) {
-    weights[k - 1] = (theta[k] + known(k)) * scaling_.term_scale[k - 1] / scaling_.target.scale;
+PosteriorAxis::TermWeights PosteriorAxis::in_scale(TermWeights weights, double bias) const {
+  for (std::size_t k = 1; k < weights.size(); ++k) {
+    weights[k - 1] = weights[k] * scaling_.term_scale[k - 1] / scaling_.target.scale;
   }
-  weights[theta.size() - 1] = scaling_.target.apply(posterior_.centre() + theta[0] + known(0));
+  weights[weights.size() - 1] = bias;
   return weights;
+}
+
+// Of what a posterior says, and of what was known beforehand.
+PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta,
+                                                 double centre) const {
+  TermWeights weights(theta.size());
+  for (std::size_t k = 0; k < theta.size(); ++k) {
+    weights[k] = theta[k] + known(k);
+  }
+  return in_scale(weights, scaling_.target.apply(centre + theta[0] + known(0)));
 }
 
 // The posterior's mean as a function of scaled kernels and terms.
@@ -195,8 +232,8 @@ void PosteriorAxis::serve() {
                          [&](double weight) { return weight / scaling_.target.scale; });
   features_.basis().to_kernel(beta_);
   mixture_.assign_posterior(features_.basis().centres(), beta_,
-                            as_span(scaled(theta.first(first))));
-  mixture_.assign_terms(as_span(scaled(posterior_.first_weights())));
+                            as_span(scaled(theta.first(first), posterior_.centre())));
+  mixture_.assign_terms(as_span(scaled(posterior_.first_weights(), posterior_.centre())));
   const double of_known = posterior_.targets(prior_).mean - posterior_.targets().mean;
   const double mean = scaling_.target.apply(posterior_.centre() + of_known);
   mixture_.assign_mean({&mean, 1});

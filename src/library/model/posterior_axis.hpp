@@ -61,6 +61,8 @@ class PosteriorAxis final : public ModelAxis {
   void refresh(Snapshot& copy) const override;
   Snapshot trained(std::string name) const override;
 
+  void apply_change(std::span<const CommandGain> gains, std::span<const double> step,
+                    const Decision& news) override;
   /// The prior's mean: coefficients of the terms, the last of the term 1. Requires that nothing has
   /// been learned yet.
   void expect_vehicle(std::vector<double> coefficients) override;
@@ -82,7 +84,8 @@ class PosteriorAxis final : public ModelAxis {
   void learn(const RowScreen::Due& due);
   void begin_anew();
   void change_scale();
-  TermWeights scaled(std::span<const double> theta) const;
+  TermWeights in_scale(TermWeights weights, double bias) const;
+  TermWeights scaled(std::span<const double> theta, double centre) const;
   void serve();
   std::size_t block_length() const;
   void know_centres();

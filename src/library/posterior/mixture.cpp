@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/vector.hpp"
 #include "kelpie/svr/online_svr.hpp"
 #include "learner/sample_map.hpp"
 #include "learner/tuning.hpp"
@@ -131,6 +132,16 @@ void Mixture::move(const SampleMap& map) {
   limit();
   paper_.move(map);
   mix_.members[kOfPaper].function.clear();
+  serve();
+}
+
+void Mixture::tell_anew(std::span<const double> step) {
+  const std::size_t inputs = mix_.members[kOfPosterior].function.kernel().inputs();
+  paper_.move([&](std::span<double> sample, double& y) {
+    y += dot(step.first(step.size() - 1), sample.subspan(inputs)) + step.back();
+  });
+  mix_.members[kOfPaper].function.clear();
+  shares_.halve_evidence();
   serve();
 }
 

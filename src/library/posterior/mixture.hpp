@@ -55,6 +55,11 @@ class Mixture {
   void move(const SampleMap& map);
   void freeze();
 
+  /// The samples are those of a vehicle with other weights of the terms: each target grows by the
+  /// step, the last number of which is the bias. Functions of a solve have to be assigned next, and
+  /// then freeze() called.
+  void tell_anew(std::span<const double> step);
+
   /// Forgets all samples. Functions of a solve have to be assigned next, and then freeze() called.
   void clear();
 

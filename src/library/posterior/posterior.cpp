@@ -31,6 +31,7 @@ double weight_of(double surprise, Likelihood likelihood) {
 Posterior::Posterior(std::size_t capacity, std::size_t first)
     : gram_(capacity),
       precision_(FeatureGroup::kMost, 1.0),
+      told_(first),
       sums_(capacity),
       factor_(capacity),
       first_(first),
@@ -204,6 +205,7 @@ void Posterior::begin_solve(std::span<const std::uint8_t> group) {
   for (RoomyVector<double>* const numbers : {&scale_, &right_, &theta_, &variance_, &scratch_}) {
     numbers->assign(m, 0.0);
   }
+  std::ranges::fill(told_, 0.0);
   sums_.resize(m);
   factor_.resize(m);
   const double information = 1.0 / (noise_ * begun_.rows_per_sample);
@@ -244,11 +246,11 @@ std::size_t Posterior::step(std::span<const std::uint8_t> group) {
     }
     if (task_ == Task::none) {
       update_noise();
-      serve();
       if (begun_.rows < kPosterior.young_rows && ++round_ < kPosterior.young_rounds) {
         begin_solve(group);
       } else {
         round_ = 0;
+        serve();
       }
     }
   }
@@ -332,9 +334,41 @@ void Posterior::serve() {
   for (std::size_t i = 0; i < first_.size(); ++i) {
     std::ranges::copy(factor_.row(i), first_factor_.row(i).begin());
     first_scale_[i] = scale_[i];
-    first_[i] *= spread_ / scale_[i];
+    first_[i] = first_[i] * spread_ / scale_[i] + told_[i];
+    weights_[i] += told_[i];
   }
   served_at_ = begun_.rows;
+}
+
+void Posterior::tell_anew(std::span<const double> step) {
+  const double moved = dot(step, std::span<const double>(moment_.data(), step.size()));
+  for (std::size_t i = 0; i < gram_.size(); ++i) {
+    const std::span<const double> row = gram_.row(i);
+    for (std::size_t j = 0; j < std::min(step.size(), i + 1); ++j) {
+      moment_[i] += row[j] * step[j];
+      moment_[j] += i < step.size() && j < i ? row[j] * step[i] : 0.0;
+    }
+  }
+  square_ += moved + dot(step, std::span<const double>(moment_.data(), step.size()));
+  for (std::size_t i = 0; ready() && i < step.size(); ++i) {
+    weights_[i] += step[i];
+    first_[i] += step[i];
+    told_[i] += step[i];
+  }
+}
+
+void Posterior::fade(double samples) {
+  const double share = samples * rows_per_sample() / rows_;
+  if (share >= 1.0) {
+    return;
+  }
+  gram_.scale(share);
+  for (double& one : moment_) {
+    one *= share;
+  }
+  for (double* const sum : {&rows_, &weight_, &square_, &widths_at_, &served_at_}) {
+    *sum *= share;
+  }
 }
 
 void Posterior::change_features(std::size_t first, const Matrix& t) {
@@ -374,7 +408,7 @@ void Posterior::change_features(std::size_t first, const Matrix& t) {
 }
 
 std::size_t Posterior::bytes(std::size_t capacity, std::size_t first) {
-  return (3 * capacity * (capacity + 1) / 2 + 9 * capacity + first * (first + 1) / 2 + 2 * first +
+  return (3 * capacity * (capacity + 1) / 2 + 9 * capacity + first * (first + 1) / 2 + 3 * first +
           FeatureGroup::kMost) *
          sizeof(double);
 }
@@ -400,6 +434,7 @@ void Posterior::visit(Archive& archive) {
   archive.part("factor of the first", first_factor_);
   list(errors_);
   if (task_ != Task::none) {
+    archive.numbers(told_);
     archive.part("standardised sums", sums_);
     archive.part("factor", factor_);
     for (RoomyVector<double>* const numbers : {&scale_, &right_, &theta_, &variance_}) {

@@ -99,6 +99,13 @@ class Posterior {
   double rows_per_sample() const { return correlation_.rows_per_sample(); }  ///< τ
   double noise() const { return noise_ * spread_ * spread_; }  ///< σ², squared unit of the target.
 
+  /// The samples become those of a vehicle with other weights of the first features: each target
+  /// grows by stepᵀφ. Weights in service follow. Cost O(m²).
+  void tell_anew(std::span<const double> step);
+
+  /// Samples fade until they weigh as `samples` independent ones, at most. Cost O(m²).
+  void fade(double samples);
+
   /// The features from the number `first` on become others, φ' = Tᵀ φ, and the sums TᵀAT and Tᵀb.
   /// Weights follow as far as T allows, until the next solve. Allocates. Cost O(m³).
   void change_features(std::size_t first, const Matrix& t);
@@ -145,6 +152,7 @@ class Posterior {
   std::size_t next_ = 0;  ///< row or column
   int round_ = 0;         ///< of a young posterior, whose widths are far off
   Begun begun_;
+  std::vector<double> told_;      ///< steps of tell_anew() since the begin
   Triangle sums_;                 ///< D⁻¹ A D⁻¹
   Triangle factor_;               ///< of M
   RoomyVector<double> scale_;     ///< D

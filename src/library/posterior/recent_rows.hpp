@@ -23,6 +23,7 @@ class RecentRows {
   };
   enum class State : std::uint8_t {
     done,      ///< learned, or never to be learned
+    dropped,   ///< not to be learned
     waits,     ///< until rows like this one are judged
     due,       ///< to be learned
     due_rare,  ///< to be learned as a row of a rare manoeuvre

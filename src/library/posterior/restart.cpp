@@ -4,10 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "core/vector.hpp"
 #include "posterior/tuning.hpp"
 
 namespace kelpie {
+
+Restart::Restart(std::size_t terms) : terms_(terms), young_(terms, terms) {
+  scored_weights_.reserve(terms);
+  next_weights_.reserve(terms);
+}
 
 void Restart::begin(std::size_t row, double t, double until_s) {
   young_.clear();
@@ -15,22 +22,27 @@ void Restart::begin(std::size_t row, double t, double until_s) {
   begin_s_ = t;
   until_s_ = until_s;
   scored_ = 0.0;
+  scored_weights_.clear();
+  next_weights_.clear();
+  kept_s_ = t;
   forget_evidence();
 }
 
-void Restart::update(std::span<const double> phi, double y, double trust, const Posterior& live,
-                     std::span<const std::uint8_t> group) {
+void Restart::update(std::span<const double> phi, double y, double t, double trust,
+                     const Posterior& live, std::span<const std::uint8_t> group) {
   const std::span<const double> terms = phi.first(terms_);
-  if (live.ready() && young_.ready()) {
+  if (live.ready() && !scored_weights_.empty()) {
     const double error = y - live.value(phi);
-    const double own = y - young_.value(terms);
+    const double own = y - dot({scored_weights_.data(), terms_}, terms);
     const double floor = kPosterior.least_error * std::min(live.noise(), young_.noise()) +
                          std::numeric_limits<double>::min();
     const double ratio = 0.5 * std::log((error * error + floor) / (own * own + floor));
     const double gain = std::clamp(ratio, -kPosterior.most_ratio, kPosterior.most_ratio);
     scored_ += 1.0;
-    evidence_ +=
-        gain / std::min(young_.rows_per_sample(), kPosterior.most_correlated * scored_ + 1.0);
+    const double own_tau =
+        std::min(young_.rows_per_sample(), kPosterior.most_correlated * scored_ + 1.0);
+    evidence_ =
+        std::min(evidence_ + gain / std::max(live.rows_per_sample(), own_tau), kPosterior.nats);
     sum_ += gain;
     rows_ += 1.0;
     if (evidence_ <= 0.0) {
@@ -41,17 +53,32 @@ void Restart::update(std::span<const double> phi, double y, double trust, const 
   if (young_.wants_solve()) {
     settle(young_, group);
   }
+  keep_weights(t);
+}
+
+void Restart::keep_weights(double t) {
+  if (!young_.ready() || t - kept_s_ < kPosterior.ahead_s) {
+    return;
+  }
+  kept_s_ = t;
+  std::swap(scored_weights_, next_weights_);
+  const std::span<const double> weights = young_.weights();
+  next_weights_.assign(weights.begin(), weights.end());
+  next_weights_[0] += young_.centre();
 }
 
 bool Restart::wins(double t, double learned_s) const {
-  return evidence_ > kPosterior.nats && sum_ > kPosterior.nats_per_row * rows_ &&
+  return evidence_ >= kPosterior.nats && sum_ > kPosterior.nats_per_row * rows_ &&
          t - begin_s_ > std::min(kPosterior.garbage_s, learned_s);
 }
 
 void Restart::visit(Archive& archive) {
   archive.part("young", young_);
+  for (RoomyVector<double>* const weights : {&scored_weights_, &next_weights_}) {
+    archive.list(*weights, terms_, [&](double& one) { archive.number(one); });
+  }
   archive.whole(row_);
-  for (double* const one : {&begin_s_, &until_s_, &scored_, &evidence_, &sum_, &rows_}) {
+  for (double* const one : {&kept_s_, &begin_s_, &until_s_, &scored_, &evidence_, &sum_, &rows_}) {
     archive.number(*one);
   }
 }

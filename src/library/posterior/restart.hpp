@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
 #include "posterior/posterior.hpp"
 #include "posterior/tuning.hpp"
@@ -13,23 +14,26 @@ namespace kelpie {
 
 /// A posterior of the terms alone that learns the rows since a later row, against the live
 /// posterior of all rows. The evidence for the restart is the logarithm of the ratio of both
-/// errors, at most 2 a row, in independent samples, since it was 0 last (CUSUM: Page 1954).
-/// Allocates in the constructor only.
+/// errors, at most 2 a row, in independent samples, since it was 0 last (CUSUM: Page 1954), and at
+/// most what is enough to win. The restart's errors are those of its weights 2 s ago or more, for
+/// neighbouring rows resemble each other. Allocates in the constructor only.
 class Restart {
  public:
-  explicit Restart(std::size_t terms) : terms_(terms), young_(terms, terms) {}
+  explicit Restart(std::size_t terms);
 
   /// Begins with the row of this number, at the time t; not an alternative any more at `until_s`.
   void begin(std::size_t row, double t, double until_s);
   void end() { until_s_ = begin_s_; }
 
+  void live_until(double until_s) { until_s_ = until_s; }  ///< Of a restart that runs.
+
   bool runs(double t) const { return t < until_s_; }
   std::size_t first_row() const { return row_; }
   double begin_s() const { return begin_s_; }
 
-  /// Scores what both posteriors say of a row, then learns the row. `phi`: its features, those of
-  /// the terms first.
-  void update(std::span<const double> phi, double y, double trust, const Posterior& live,
+  /// Scores what both posteriors say of the row of the time t, then learns the row. `phi`: its
+  /// features, those of the terms first.
+  void update(std::span<const double> phi, double y, double t, double trust, const Posterior& live,
               std::span<const std::uint8_t> group);
 
   /// Whether the rows since the begin are those of another vehicle, or the first after garbage:
@@ -43,11 +47,17 @@ class Restart {
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
-  static std::size_t bytes(std::size_t terms) { return Posterior::bytes(terms, terms); }
+  static std::size_t bytes(std::size_t terms) {
+    return Posterior::bytes(terms, terms) + 2 * terms * sizeof(double);
+  }
 
  private:
+  void keep_weights(double t);
+
   std::size_t terms_;
   Posterior young_;
+  RoomyVector<double> scored_weights_, next_weights_;  ///< 2 s ago or more, and later
+  double kept_s_ = 0.0;                                ///< time of the latter [s]
   std::size_t row_ = 0;
   double begin_s_ = 0.0, until_s_ = 0.0;            ///< [s]
   double scored_ = 0.0;                             ///< rows

@@ -68,8 +68,11 @@ void RowScreen::run_restarts(const RecentRows::Row& row, const Features& feature
   const double trust = features.trust(row.x);
   for (Restart& one : restarts_) {
     if (one.runs(row.t)) {
-      one.update(phi, row.left, trust, live, features.groups());
+      one.update(phi, row.left, row.t, trust, live, features.groups());
     }
+  }
+  if (Restart& last = restarts_[kRestarts]; last.runs(row.t) && last.leads()) {
+    last.live_until(row.t + 2.0 * kPosterior.garbage_s);
   }
   const auto winner =
       std::ranges::find_if(restarts_.rbegin(), restarts_.rend(), [&](const auto& one) {
@@ -78,7 +81,15 @@ void RowScreen::run_restarts(const RecentRows::Row& row, const Features& feature
   if (winner == restarts_.rend()) {
     return;
   }
-  won_ = {.since_s = winner->begin_s(), .is_change = winner == restarts_.rbegin()};
+  if (winner == restarts_.rbegin() &&
+      distance(winner->first_row(), true, features, live) < kPosterior.least_changed) {
+    release(State::due_rare);  // teaches of places of which nothing was known
+    winner->end();
+    return;
+  }
+  won_ = {.since_s = winner->begin_s(),
+          .is_change =
+              winner == restarts_.rbegin() && winner->begin_s() - first_s_ > kPosterior.garbage_s};
   learned_s_ = row.t - won_->since_s;
   next_ = winner->first_row();
   for (std::size_t i = rows_.begin(); i < rows_.end(); ++i) {
@@ -91,42 +102,67 @@ void RowScreen::run_restarts(const RecentRows::Row& row, const Features& feature
   restarts_[kRestarts].end();
 }
 
-// By the posteriors of the terms, which are small.
 void RowScreen::judge(const Features& features, const Posterior& live) {
+  if (distance(waits_since_, false, features, live) > kPosterior.most_distance) {
+    release(State::dropped);
+    return;
+  }
+  double squares = 0.0, products = 0.0, last = 0.0;
+  for (std::size_t i = waits_since_; i < rows_.end(); ++i) {
+    if (rows_.state(i) == State::waits) {
+      features.first(rows_[i].x, phi_);
+      const double error = rows_[i].left - before_.value(phi_);
+      squares += error * error;
+      products += error * last;
+      last = error;
+    }
+  }
+  release(products > kPosterior.coherence * squares ? State::due_rare : State::due);
+  restarts_[kRestarts].end();  // no other vehicle
+}
+
+// How far rows contradict what is known. `all`: not only rows that wait. By the posteriors of the
+// terms, which are small.
+double RowScreen::distance(std::size_t first, bool all, const Features& features,
+                           const Posterior& live) {
   before_.assign_first(live);
   for (int i = 0; i < kPosterior.young_rounds; ++i) {
     settle(before_, features.groups());
   }
   after_ = before_;
-  double squares = 0.0, products = 0.0, last = 0.0;
-  for (std::size_t i = waits_since_; i < rows_.end(); ++i) {
-    if (rows_.state(i) == State::waits) {
+  for (std::size_t i = first; i < rows_.end(); ++i) {
+    if (all || rows_.state(i) == State::waits) {
       const RecentRows::Row row = rows_[i];
       features.first(row.x, phi_);
-      const double error = row.left - before_.value(phi_);
-      squares += error * error;
-      products += error * last;
-      last = error;
       after_.add(phi_, row.left, features.trust(row.x), Likelihood::gauss);
     }
   }
   settle(after_, features.groups());
-  const bool contradicts = before_.distance(after_) > kPosterior.most_distance;
-  const bool is_coherent = products > kPosterior.coherence * squares;
-  release(contradicts ? State::done : is_coherent ? State::due_rare : State::due);
+  return before_.distance(after_);
 }
 
 void RowScreen::release(State state) {
   for (std::size_t i = waits_since_; i < rows_.end(); ++i) {
     if (rows_.state(i) == State::waits) {
       rows_.state(i) = state;
-      dropped_ += state == State::done ? 1 : 0;
+      dropped_ += state == State::dropped ? 1 : 0;
     }
   }
   next_ = std::min(next_, waits_since_);
   waits_since_ = rows_.end();
-  if (state != State::done) {
-    restarts_[kRestarts].end();  // no other vehicle: nothing known is contradicted
+}
+
+void RowScreen::believe_change(double since_s) {
+  for (std::size_t i = rows_.begin(); i < rows_.end(); ++i) {
+    State& state = rows_.state(i);
+    if (rows_[i].t >= since_s && (state == State::waits || state == State::dropped)) {
+      state = State::due;
+      next_ = std::min(next_, i);
+    }
+  }
+  waits_since_ = rows_.end();
+  for (Restart& one : restarts_) {
+    one.forget_evidence();
   }
 }
 

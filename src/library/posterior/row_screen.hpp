@@ -27,7 +27,8 @@ namespace kelpie {
 ///   others by Student's.
 /// - A Restart begins with each row that waits as the first, and 10, 20 and 40 s after the first
 ///   row of all, for garbage at the start surprises nobody. Where a restart wins, the live
-///   posterior has to be forgotten, and the rows since the restart's begin are due.
+///   posterior has to be forgotten, and the rows since the restart's begin are due; but where rows
+///   that waited do not contradict the vehicle known (a distance of 0.2), they are learned beside.
 /// - After 36 s, rows that wait are due, whatever they are: garbage ends.
 ///
 /// Cost of a row O(n²) for n terms, of a judgement O(n³). Allocates in the constructor only.
@@ -44,11 +45,15 @@ class RowScreen {
 
   struct Won {
     double since_s;  ///< time of the first row [s]
-    bool is_change;  ///< of the vehicle: rows surprised
+    bool is_change;  ///< of the vehicle: rows surprised, after more than what may be garbage
   };
   /// The restart that won with the last row: whatever was learned is to be forgotten before the
   /// next row is learned.
   std::optional<Won> won() const { return won_; }
+
+  /// `live` knows a change of the vehicle since a time [s] from now on: rows since then that wait
+  /// or were dropped are due.
+  void believe_change(double since_s);
 
   std::int64_t dropped() const { return dropped_; }  ///< Rows dropped with the last row.
 
@@ -72,6 +77,7 @@ class RowScreen {
   void run_restarts(const RecentRows::Row& row, const Features& features,
                     std::span<const double> phi, const Posterior& live);
   void judge(const Features& features, const Posterior& live);
+  double distance(std::size_t first, bool all, const Features& features, const Posterior& live);
   void release(State state);
 
   RecentRows rows_;

@@ -8,6 +8,12 @@
 
 namespace kelpie {
 
+void Triangle::scale(double factor) {
+  for (double& value : values_) {
+    value *= factor;
+  }
+}
+
 void Triangle::add_square(double weight, std::span<const double> x) {
   for (std::size_t i = 0; i < size_; ++i) {
     if (x[i] != 0.0) {

@@ -28,6 +28,8 @@ class Triangle {
     values_.resize(size * (size + 1) / 2);
   }
 
+  void scale(double factor);  ///< All numbers by a factor.
+
   /// The symmetric matrix += weight · x xᵀ. Requires a number per row. Cost O(size²).
   void add_square(double weight, std::span<const double> x);
 

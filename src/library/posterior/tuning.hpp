@@ -42,13 +42,16 @@ inline constexpr struct PosteriorTuning {
   double surprise = 16.0;       ///< e²/(σ² + s²) beyond which a row waits; by hand
   double calm_s = 2.0;          ///< after which rows that wait are judged [s]; by hand
   double most_distance = 0.5;   ///< Cook's, of rows that are learned; chosen on garbage of ../data
+  double least_changed = 0.2;   ///< Cook's, of rows of another vehicle; chosen on ../data/plants
   double coherence = 0.6;       ///< Σ e e'/Σ e² of neighbours, beyond that of two equal; by hand
   double first_restart_s = 10.0, restart_s = 20.0;  ///< [s]; by hand
-  double nats = 10.0, nats_per_row = 0.7;           ///< of a restart that wins; by hand
-  double most_ratio = 2.0;                          ///< logarithm of a ratio of errors; by hand
+  double ahead_s = 2.0;                    ///< least age of weights that are scored [s]; by hand
+  double nats = 10.0, nats_per_row = 0.7;  ///< of a restart that wins; by hand
+  double most_ratio = 2.0;                 ///< logarithm of a ratio of errors; by hand
   double least_error = 0.02;     ///< square of an error, in variances of the noise; by hand
   double most_correlated = 0.2;  ///< τ of a restart, per row; by hand
-  int rows_per_update = 4;       ///< rows learned later; by hand
+  double kept = 50.0;  ///< independent samples of before a change; from 50, 150, 1,000 on ../data
+  int rows_per_update = 4;  ///< rows learned later; by hand
 } kPosterior;
 
 }  // namespace kelpie

@@ -63,10 +63,11 @@ void learn(DynamicsModel& model, const PlanarDrive& drive, std::size_t from, std
 }
 
 // Root mean square of the errors on another drive without noise, in that of the targets.
+// `strength`: of the first thruster.
 template <typename Model>
-double error_elsewhere(const Model& model) {
+double error_elsewhere(const Model& model, double strength = 1.0) {
   PlanarDrive drive;
-  drive.drive(9, 800, kStep);
+  drive.drive(9, 800, kStep, strength);
   double wrong = 0.0;
   double size = 0.0;
   for (std::size_t i = 0; i < drive.x.size(); ++i) {
@@ -108,30 +109,60 @@ void spoil(PlanarDrive& drive, std::size_t from, std::size_t to) {
   }
 }
 
-// Put away and taken up again at random moments, also while the kernel has new units, rows of
-// garbage wait, and all is forgotten.
+// The first thruster of the drive from a row on.
+void weaken(PlanarDrive& drive, std::size_t from, double strength) {
+  for (std::size_t i = from; i < drive.x.size(); ++i) {
+    const std::array<double, 2> sound = PlanarDrive::accelerations(drive.x[i]);
+    const std::array<double, 2> weak = PlanarDrive::accelerations(drive.x[i], strength);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      drive.y[i][axis] += weak[axis] - sound[axis];
+    }
+  }
+}
+
+// A model put away and taken up again at random moments, about every `every` samples.
+DynamicsModel expect_same_life(const PlanarDrive& drive, int buffer, std::size_t first_stop,
+                               std::uint64_t every) {
+  RandomStream random(9, "stops");
+  DynamicsModel whole = new_model(buffer);
+  learn(whole, drive, 0, first_stop);
+  DynamicsModel broken = whole;
+  std::array<double, 2> a{};
+  std::array<double, 2> b{};
+  for (std::size_t i = first_stop; i < drive.x.size() && !::testing::Test::HasFailure(); ++i) {
+    if (random.below(every) == 0) {
+      const std::string state = broken.save();
+      EXPECT_TRUE(state == whole.save()) << "sample " << i;
+      broken = DynamicsModel::resume(new_model(buffer), state);
+    }
+    learn(whole, drive, i, i + 1);
+    learn(broken, drive, i, i + 1);
+    whole.predict(drive.x[(7 * i) % drive.x.size()], a);
+    broken.predict(drive.x[(7 * i) % drive.x.size()], b);
+    EXPECT_EQ(a, b) << "sample " << i;
+  }
+  EXPECT_TRUE(whole.save() == broken.save());
+  return whole;
+}
+
+// Also while the kernel has new units, rows of garbage wait, and all is forgotten.
 TEST(PosteriorLearner, GoesOnToTheLastBit) {
   PlanarDrive drive = noisy_drive(500);
   spoil(drive, 0, 20);
   spoil(drive, 300, 320);
-  RandomStream random(9, "stops");
-  DynamicsModel whole = new_model(60);
-  DynamicsModel broken = new_model(60);
-  std::array<double, 2> a{};
-  std::array<double, 2> b{};
-  for (std::size_t i = 0; i < drive.x.size() && !HasFailure(); ++i) {
-    if (random.below(i < 120 ? 4 : 20) == 0) {
-      const std::string state = broken.save();
-      EXPECT_TRUE(state == whole.save()) << "sample " << i;
-      broken = DynamicsModel::resume(new_model(60), state);
-    }
-    learn(whole, drive, i, i + 1);
-    learn(broken, drive, i, i + 1);
-    whole.predict(drive.x[(7 * i) % 500], a);
-    broken.predict(drive.x[(7 * i) % 500], b);
-    EXPECT_EQ(a, b) << "sample " << i;
+  expect_same_life(drive, 60, 0, 10);
+}
+
+// While a change is open, and when a change is believed.
+TEST(PosteriorLearner, GoesOnThroughAChange) {
+  PlanarDrive drive = noisy_drive(2600, 1.0);
+  for (std::size_t i = 2400; i < drive.x.size(); ++i) {
+    drive.y[i][0] *= -1.0;
   }
-  EXPECT_TRUE(whole.save() == broken.save());
+  EXPECT_GE(expect_same_life(drive, 200, 2400, 10).axis(0).status().tally.changes, 1);
+  drive = noisy_drive(2600, 1.0);
+  weaken(drive, 2400, 0.2);
+  EXPECT_GE(expect_same_life(drive, 200, 2400, 10).axis(0).status().tally.changes, 1);
 }
 
 TEST(PosteriorLearner, AllocatesNothingWhileTheUnitsStay) {
@@ -181,7 +212,7 @@ TEST(PosteriorLearner, LearnsInSlices) {
 
 TEST(PosteriorLearner, HasAnExactJacobian) {
   DynamicsModel model = new_model();
-  const PlanarDrive drive = noisy_drive(900);
+  const PlanarDrive drive = noisy_drive(1300);
   learn(model, drive, 0, drive.x.size());
   for (const std::size_t i : {100U, 300U, 777U}) {
     std::array<double, 2> y{};
@@ -205,7 +236,7 @@ TEST(PosteriorLearner, HasAnExactJacobian) {
 
 TEST(PosteriorLearner, ATrainedModelSaysTheSame) {
   DynamicsModel model = new_model();
-  const PlanarDrive drive = noisy_drive(900);
+  const PlanarDrive drive = noisy_drive(1300);
   learn(model, drive, 0, drive.x.size());
   const TrainedModel trained = model.trained();
   const DynamicsModel copy = model;
@@ -341,6 +372,26 @@ TEST(PosteriorLearner, BelievesAnotherVehicle) {
   EXPECT_EQ(changes, 1);
   EXPECT_GE(since, drive.t[1000]);
   EXPECT_LE(since, drive.t[1000] + 40.0);
+}
+
+// Both axes tell of the thruster together, and what was learned of all else stays.
+TEST(PosteriorLearner, FollowsAThrusterThatFails) {
+  constexpr std::size_t kFails = 2400;
+  PlanarDrive drive = noisy_drive(kFails + 80, 1.0);
+  weaken(drive, kFails, 0.4);
+  DynamicsModel model = new_model();
+  learn(model, drive, 0, kFails);
+  const double before = error_elsewhere(model, 0.4);
+  bool believed = false;
+  for (std::size_t i = kFails; i < drive.x.size(); ++i) {
+    learn(model, drive, i, i + 1);
+    for (const Decision& decision : model.decisions()) {
+      EXPECT_EQ(decision.changed, model.decisions()[0].changed) << i;
+      believed |= decision.changed && decision.changed_since > drive.t[kFails] - 15.0;
+    }
+  }
+  EXPECT_TRUE(believed) << "within 20 s";
+  EXPECT_LT(error_elsewhere(model, 0.4), 0.3 * before);
 }
 
 TEST(PosteriorLearner, BeginsWithAKnownVehicle) {

@@ -240,6 +240,53 @@ TEST(Posterior, FollowsAChangeOfItsFeatures) {
   }
 }
 
+// As of a vehicle with other weights: the same as if the targets had been those of that vehicle,
+// at once, at the end of a solve at hand, and after the next solve.
+TEST(Posterior, TellsItsSamplesAnew) {
+  const std::array<double, 4> step{-2.0, 1.0, 1.5, 0.0};
+  const std::vector<Row> data = rows(10, 403, 0.3);
+  std::vector<Row> other = data;
+  for (Row& row : other) {
+    for (std::size_t i = 0; i < step.size(); ++i) {
+      row.y += step[i] * row.phi[i];
+    }
+  }
+  const Posterior direct = learned(other);
+  Posterior told = learned(data);
+  const auto expect_same = [&](double within) {
+    for (std::size_t i = 0; i < 20; ++i) {
+      EXPECT_NEAR(told.value(data[i].phi), direct.value(data[i].phi), within);
+    }
+    EXPECT_NEAR(told.targets().mean, direct.targets().mean, 0.02);
+    EXPECT_NEAR(told.targets().scale, direct.targets().scale, 0.02);
+  };
+  Budget one_step(1);
+  EXPECT_FALSE(told.solve(kGroups, one_step));
+  told.tell_anew(step);
+  expect_same(0.05);
+  solve(told);
+  expect_same(0.05);
+  solve(told);
+  expect_same(0.05);
+  EXPECT_NEAR(told.first_weights()[1], direct.first_weights()[1], 0.3);
+  EXPECT_NEAR(told.noise(), direct.noise(), 0.01);
+}
+
+TEST(Posterior, LaterSamplesCountMoreAfterEarlierFade) {
+  const auto error_after = [](double kept) {
+    Posterior posterior = learned(rows(11, 2000, 0.3));
+    posterior.fade(kept);
+    for (Row& row : rows(12, 200, 0.3)) {
+      row.y += 0.3;
+      learn(posterior, row);
+    }
+    solve(posterior);
+    return std::abs(posterior.value(std::array{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}) - 5.3);
+  };
+  EXPECT_LT(error_after(50.0), 0.15);
+  EXPECT_GT(error_after(1e9), 0.2);
+}
+
 TEST(Posterior, GoesOnFromASavedState) {
   const std::vector<Row> data = rows(9, 250, 0.3);
   const auto make = [] { return Posterior(kFeatures, 4); };
@@ -247,6 +294,9 @@ TEST(Posterior, GoesOnFromASavedState) {
       make, data.size(), [](std::size_t i) { return i % 13 == 5; },
       [&](Posterior& posterior, std::size_t i) {
         posterior.add(data[i].phi, data[i].y, 1.0, Likelihood::student);
+        if (i % 40 == 39) {
+          posterior.tell_anew(std::array{0.0, 0.1, 0.0, 0.0});
+        }
         Budget one_step(1);  // a solve is at hand at most stops
         if (posterior.wants_solve()) {
           posterior.solve(kGroups, one_step);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,9 @@ struct Stream {
   std::vector<double> learned_s{};
   double t = 0.0;
 
-  // Adds a row with an error; what is due is learned.
-  void add(double error, double seconds = 0.25) {
-    const std::array<double, 2> x{random.normal(), random.normal()};
+  // Adds a row with an error, and a command if any; what is due is learned.
+  void add(double error, double seconds = 0.25, std::optional<double> command = {}) {
+    const std::array<double, 2> x{random.normal(), command.value_or(random.normal())};
     std::array<double, kTerms> phi{};
     features.first(x, phi);
     const double y = 2.0 * x[0] - x[1] + 0.1 * random.normal() + error;
@@ -98,6 +99,23 @@ TEST(RowScreen, TakesUpWhatNeverEnds) {
   EXPECT_TRUE(stream.screen.won()->is_change);
   EXPECT_DOUBLE_EQ(stream.screen.won()->since_s, 100.0);
   EXPECT_EQ(stream.learned_s.size(), 400U + static_cast<std::size_t>((stream.t - 100.0) / 0.25));
+}
+
+// A thruster runs for the first time, and the model is far off: the restart is better for longer
+// than garbage lasts, yet tells nothing against what was known.
+TEST(RowScreen, TakesUpANewPlaceWithoutForgetting) {
+  Stream stream;
+  for (int i = 0; i < 600; ++i) {
+    stream.add(0.0, 0.25, 0.0);
+  }
+  for (int i = 0; i < 200; ++i) {
+    const double command = 2.0 + 0.1 * (i % 5);
+    stream.add(3.0 * command, 0.25, command);
+    EXPECT_FALSE(stream.screen.won()) << i;
+    EXPECT_EQ(stream.screen.dropped(), 0) << i;
+  }
+  EXPECT_EQ(stream.learned_s.size(), 800U);
+  EXPECT_NEAR(stream.live.value(std::array{1.0, 1.0, 0.0}), 2.0, 0.2);
 }
 
 TEST(RecentRows, KeepTheLastRowsOfAFullRing) {
