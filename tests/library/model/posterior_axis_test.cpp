@@ -408,6 +408,10 @@ TEST(PosteriorLearner, BeginsWithAKnownVehicle) {
     learn(*model, drive, 5, 70);
   }
   EXPECT_LT(error_elsewhere(known), 0.6 * error_elsewhere(unknown));
+  const std::array ahead{0.0, 0.0, 12.0, 12.0};  // faster than ever
+  std::array<double, 2> said{};
+  known.predict(ahead, said);
+  EXPECT_NEAR(said[0], PlanarDrive::accelerations(ahead)[0], 0.2);
   learn(wrong, drive, 70, drive.x.size());
   EXPECT_LT(error_elsewhere(wrong), 0.08);
 }
