@@ -23,7 +23,7 @@ namespace kelpie {
 /// sample. Before the first solve, after ten samples, the mean of the targets is in service.
 ///
 /// The model in service is a function of kernels and terms, as of any learner, within the targets
-/// seen and a tenth of their range.
+/// seen and a tenth of their range, or within what well-known terms can add up to.
 class PosteriorAxis final : public ModelAxis {
  public:
   PosteriorAxis(std::size_t inputs, const SharedSettings& shared, const OnlineSvrSettings& settings,

@@ -35,7 +35,8 @@ Mixture::Mixture(const SvrFunction& posterior, const OnlineSvrSettings& settings
       mix_(members_of(posterior, paper_.learner().model())),
       shares_(kPosterior.first_shares),
       seen_(kOnline.range.margin),
-      seen_terms_(posterior.kernel().terms()) {
+      seen_terms_(posterior.kernel().terms()),
+      certain_(posterior.kernel().terms() + 1) {
   mix_.limits.caution = kOnline.members.caution;
   for (const FunctionMix::Member& member : mix_.members) {
     frozen_.push_back(member.function);
@@ -81,10 +82,18 @@ void Mixture::see(std::span<const double> z, double y) {
 }
 
 void Mixture::limit() {
-  const auto [low, high] = seen_.range();
-  mix_.limits.low = low;
-  mix_.limits.high = high;
   mix_.term_ranges = seen_terms_.ranges();
+  ValueRange known{certain_.back(), certain_.back()};
+  for (std::size_t k = 0; k + 1 < certain_.size(); ++k) {
+    if (certain_[k] != 0.0) {
+      const auto [low, high] = mix_.term_range(k);
+      known.low += std::min(certain_[k] * low, certain_[k] * high);
+      known.high += std::max(certain_[k] * low, certain_[k] * high);
+    }
+  }
+  const auto [low, high] = seen_.range();
+  mix_.limits.low = std::min(low, known.low);
+  mix_.limits.high = std::max(high, known.high);
 }
 
 void Mixture::serve() {
@@ -106,9 +115,16 @@ void Mixture::freeze() {
 }
 
 void Mixture::assign_posterior(const SampleStore& centres, std::span<const double> beta,
-                               std::span<const double> weights) {
+                               std::span<const double> weights, std::span<const double> errors) {
   mix_.members[kOfPosterior].function.assign(centres, beta, weights.first(weights.size() - 1),
                                              weights.back());
+  std::ranges::transform(weights.first(errors.size()), errors, certain_.begin(),
+                         [](double weight, double error) {
+                           const double least = std::abs(weight) - kPosterior.certain * error;
+                           return std::copysign(std::max(0.0, least), weight);
+                         });
+  certain_.back() = weights.back();
+  limit();
 }
 
 // Weights of all terms, or of none.
@@ -153,6 +169,7 @@ void Mixture::clear() {
   shares_ = MemberShares(kPosterior.first_shares);
   seen_.clear();
   seen_terms_ = SeenTermRanges(mix_.members[kOfPosterior].function.kernel().terms());
+  std::ranges::fill(certain_, 0.0);
   limit();
   serve();
 }
@@ -181,6 +198,7 @@ std::size_t Mixture::bytes(std::size_t inputs, std::size_t terms, std::size_t ce
                            const OnlineSvrSettings& settings) {
   const std::size_t linear = SvrFunction::bytes(inputs, terms, 0);
   return PaperMember::bytes(inputs, terms, settings) + SeenTermRanges::bytes(terms) +
+         (terms + 1) * sizeof(double) +
          2 * (SvrFunction::bytes(inputs, terms, centres) + 2 * linear +
               SvrFunction::bytes(inputs, terms, settings.places()) +
               kMembers * sizeof(FunctionMix::Member));

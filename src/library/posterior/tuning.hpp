@@ -32,6 +32,7 @@ inline constexpr struct PosteriorTuning {
   /// Shares of posterior, terms, svr and mean before the first losses; by hand.
   std::array<double, 4> first_shares{0.3, 0.4, 0.15, 0.15};
   std::array<double, 4> first_shares_of_known{0.45, 0.45, 0.05, 0.05};  ///< likewise
+  double certain = 2.0;          ///< standard errors of a weight that count as unknown; by hand
   double block = 2.0;            ///< independent samples of a block of losses; by hand
   int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand
   std::int64_t slice = 300'000;  ///< numbers of a solve in one update; by hand

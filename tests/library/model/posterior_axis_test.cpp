@@ -324,6 +324,43 @@ TEST(PosteriorLearner, ForgetsGarbageAtTheStart) {
   EXPECT_LT(error_elsewhere(model), 0.1);
 }
 
+// Thrusters that never ran ahead together: each in its range, yet more acceleration than was seen.
+TEST(PosteriorLearner, AddsUpThrustersThatNeverRanTogether) {
+  PlanarDrive drive = noisy_drive(1500, 1.0);
+  RandomStream random(6, "noise");
+  double most = 0.0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    double& n1 = drive.x[i][2];
+    double& n2 = drive.x[i][3];
+    (n1 < n2 ? n1 : n2) = std::min(0.0, std::min(n1, n2));
+    drive.y[i] = PlanarDrive::accelerations(drive.x[i]);
+    for (double& one : drive.y[i]) {
+      one += 0.02 * random.normal();
+    }
+    most = std::max(most, drive.y[i][0]);
+  }
+  DynamicsModel model = new_model();
+  learn(model, drive, 0, drive.x.size());
+  const TrainedModel trained = model.trained();
+  for (const double n : {6.0, 7.0, 8.0}) {
+    const std::array x{0.3, 0.0, n, n};
+    const double is = PlanarDrive::accelerations(x)[0];
+    ASSERT_GT(is, 1.1 * most);
+    std::array<double, 2> said{};
+    std::array<Prediction, 2> assessed{};
+    std::array<double, 8> slopes{};
+    model.predict(x, said);
+    EXPECT_NEAR(said[0], is, 0.05 * is);
+    model.predict(x, assessed);
+    EXPECT_EQ(assessed[0].value, said[0]);
+    model.predict_with_jacobian(x, said, slopes);
+    EXPECT_NEAR(said[0], assessed[0].value, 1e-12);
+    EXPECT_NEAR(slopes[2], 0.02 * n, 0.002 * n) << "for a controller";
+    trained.predict(x, said);
+    EXPECT_EQ(said[0], assessed[0].value);
+  }
+}
+
 // Full ahead for two seconds, every two minutes: no garbage, for nothing known is contradicted.
 TEST(PosteriorLearner, LearnsRareManoeuvres) {
   PlanarDrive drive = noisy_drive(4000, 1.0);
@@ -422,6 +459,10 @@ TEST(PosteriorLearner, BeginsWithAKnownVehicle) {
     learn(*model, drive, 5, 70);
   }
   EXPECT_LT(error_elsewhere(known), 0.6 * error_elsewhere(unknown));
+  const std::array ahead{0.0, 0.0, 12.0, 12.0};  // faster than ever
+  std::array<double, 2> said{};
+  known.predict(ahead, said);
+  EXPECT_NEAR(said[0], PlanarDrive::accelerations(ahead)[0], 0.2);
   learn(wrong, drive, 70, drive.x.size());
   EXPECT_LT(error_elsewhere(wrong), 0.08);
 }
