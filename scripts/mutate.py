@@ -328,6 +328,11 @@ class Ended:
         self.memory_kb = usage.ru_maxrss
 
 
+def runs_rows(kelpie, folder):
+    Ended(kelpie, folder, [f"{folder}/said\t--version\n"])
+    return (folder / "said").exists()
+
+
 class Attack:
     """The mutants of a kind: each a number, its content and the file it was made of."""
 
@@ -430,6 +435,9 @@ def main():
     broken = 0
     with tempfile.TemporaryDirectory() as folder:
         kelpie = str(Path(options.kelpie).resolve())
+        if not runs_rows(kelpie, Path(folder)):
+            parser.error(f"{options.kelpie} has to be the program kelpie_in_a_row, which reads "
+                         "commands from its input: cmake --build BUILD --target kelpie_in_a_row")
         kinds = make_kinds(kelpie, Path(folder))
         if options.list:
             print(*kinds, sep="\n")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -201,12 +202,13 @@ std::map<std::string, double> start_velocities(const RolloutArguments& options,
 // Options that judge have nothing to do where commands are followed.
 void refuse_judging(const RolloutArguments& options) {
   const RolloutArguments usual;
-  const std::pair<const char*, bool> given[]{{"--horizons", options.horizons != usual.horizons},
-                                             {"--split", options.split != usual.split},
-                                             {"--seed", options.seed != usual.seed},
-                                             {"--current", options.current != kUsualCurrent},
-                                             {"--verbose", options.answer.verbose},
-                                             {"--json", options.answer.json}};
+  const auto given = std::to_array<std::pair<const char*, bool>>(
+      {{"--horizons", options.horizons != usual.horizons},
+       {"--split", options.split != usual.split},
+       {"--seed", options.seed != usual.seed},
+       {"--current", options.current != kUsualCurrent},
+       {"--verbose", options.answer.verbose},
+       {"--json", options.answer.json}});
   for (const auto& [option, is_given] : given) {
     require(!is_given, option,
             "belongs to the judgement of a log; with --start the log holds commands, and "
