@@ -134,9 +134,9 @@ void PosteriorAxis::apply_change(std::span<const CommandGain> gains, std::span<c
       told[k] = (term_gain(terms(), k - 1, gains) - 1.0) * weight;
     }
   }
-  posterior_.tell_anew(as_span(told));
+  posterior_.tell_anew(as_span(told),
+                       news.changed ? kPosterior.kept : std::numeric_limits<double>::infinity());
   if (news.changed) {
-    posterior_.fade(kPosterior.kept);
     screen_.believe_change(news.changed_since);
   }
   mixture_.tell_anew(as_span(in_scale(told, told[0] / scaling_.target.scale)));

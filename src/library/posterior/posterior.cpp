@@ -62,7 +62,7 @@ double Posterior::surprise(std::span<const double> phi, double y) {
   if (!ready()) {
     return 0.0;
   }
-  const double error = (y - value(phi)) / spread_;
+  const double error = (y - value(*this, phi)) / spread_;
   return error * error / (noise_ + variance_of_first(phi));
 }
 
@@ -72,7 +72,7 @@ void Posterior::add(std::span<const double> phi, double y, double trust, Likelih
   }
   double weight = trust;
   if (ready()) {
-    const double error = (y - value(phi)) / (spread_ * std::sqrt(noise_));
+    const double error = (y - value(*this, phi)) / (spread_ * std::sqrt(noise_));
     correlation_.add(std::clamp(error, -kPosterior.most_deviations, kPosterior.most_deviations));
     weight *= weight_of(surprise(phi, y), likelihood);
   }
@@ -87,8 +87,9 @@ void Posterior::add(std::span<const double> phi, double y, double trust, Likelih
   square_ += weight * y * y;
 }
 
-double Posterior::value(std::span<const double> phi) const {
-  return ready() ? centre_ + dot(weights(), phi.first(weights_.size())) : centre();
+double value(const Posterior& posterior, std::span<const double> phi) {
+  const std::span<const double> weights = posterior.weights();
+  return posterior.centre() + dot(weights, phi.first(weights.size()));
 }
 
 // Of the first features' posterior, in variances of the target.
@@ -340,7 +341,7 @@ void Posterior::serve() {
   served_at_ = begun_.rows;
 }
 
-void Posterior::tell_anew(std::span<const double> step) {
+void Posterior::tell_anew(std::span<const double> step, double kept) {
   const double moved = dot(step, std::span<const double>(moment_.data(), step.size()));
   for (std::size_t i = 0; i < gram_.size(); ++i) {
     const std::span<const double> row = gram_.row(i);
@@ -355,6 +356,7 @@ void Posterior::tell_anew(std::span<const double> step) {
     first_[i] += step[i];
     told_[i] += step[i];
   }
+  fade(kept);
 }
 
 void Posterior::fade(double samples) {

@@ -88,8 +88,6 @@ class Posterior {
   std::span<const double> first_weights() const { return first_; }
   /// The mean of the targets at the last solve; before the first, so far.
   double centre() const { return ready() ? centre_ : targets().mean; }
-  /// centre() + θᵀφ; the mean of the targets before the first solve. Cost O(m).
-  double value(std::span<const double> phi) const;
   /// Standard error of a weight at the last step of the evidence; infinite before.
   double error(std::size_t feature) const;
   /// Mean and standard deviation of the targets so far, plus `known` · φ of the first features; 0
@@ -100,11 +98,9 @@ class Posterior {
   double noise() const { return noise_ * spread_ * spread_; }  ///< σ², squared unit of the target.
 
   /// The samples become those of a vehicle with other weights of the first features: each target
-  /// grows by stepᵀφ. Weights in service follow. Cost O(m²).
-  void tell_anew(std::span<const double> step);
-
-  /// Samples fade until they weigh as `samples` independent ones, at most. Cost O(m²).
-  void fade(double samples);
+  /// grows by stepᵀφ, and weights in service follow. From then on, samples so far weigh as `kept`
+  /// independent ones, at most. Cost O(m²).
+  void tell_anew(std::span<const double> step, double kept);
 
   /// The features from the number `first` on become others, φ' = Tᵀ φ, and the sums TᵀAT and Tᵀb.
   /// Weights follow as far as T allows, until the next solve. Allocates. Cost O(m³).
@@ -117,6 +113,7 @@ class Posterior {
  private:
   enum class Task : std::uint8_t { none, factorise, invert };
 
+  void fade(double samples);
   bool differ() const;  ///< Whether targets differ, beyond rounding.
   double variance_of_first(std::span<const double> phi);
   double samples() const { return begun_.rows / begun_.rows_per_sample; }
@@ -169,6 +166,9 @@ class Posterior {
   double centre_ = 0.0, spread_ = 1.0;  ///< of the targets
   double served_at_ = 0.0;              ///< rows
 };
+
+/// centre() + θᵀφ; the mean of the targets before the first solve. Cost O(m).
+double value(const Posterior& posterior, std::span<const double> phi);
 
 /// Solves at once, without a budget. Cost O(m³).
 void settle(Posterior& posterior, std::span<const std::uint8_t> group);

@@ -32,7 +32,7 @@ void Restart::update(std::span<const double> phi, double y, double t, double tru
                      const Posterior& live, std::span<const std::uint8_t> group) {
   const std::span<const double> terms = phi.first(terms_);
   if (live.ready() && !scored_weights_.empty()) {
-    const double error = y - live.value(phi);
+    const double error = y - value(live, phi);
     const double own = y - dot({scored_weights_.data(), terms_}, terms);
     const double floor = kPosterior.least_error * std::min(live.noise(), young_.noise()) +
                          std::numeric_limits<double>::min();

@@ -111,7 +111,7 @@ void RowScreen::judge(const Features& features, const Posterior& live) {
   for (std::size_t i = waits_since_; i < rows_.end(); ++i) {
     if (rows_.state(i) == State::waits) {
       features.first(rows_[i].x, phi_);
-      const double error = rows_[i].left - before_.value(phi_);
+      const double error = rows_[i].left - value(before_, phi_);
       squares += error * error;
       products += error * last;
       last = error;

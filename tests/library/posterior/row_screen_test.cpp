@@ -115,7 +115,7 @@ TEST(RowScreen, TakesUpANewPlaceWithoutForgetting) {
     EXPECT_EQ(stream.screen.dropped(), 0) << i;
   }
   EXPECT_EQ(stream.learned_s.size(), 800U);
-  EXPECT_NEAR(stream.live.value(std::array{1.0, 1.0, 0.0}), 2.0, 0.2);
+  EXPECT_NEAR(value(stream.live, std::array{1.0, 1.0, 0.0}), 2.0, 0.2);
 }
 
 TEST(RecentRows, KeepTheLastRowsOfAFullRing) {
