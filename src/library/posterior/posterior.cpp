@@ -368,9 +368,12 @@ void Posterior::fade(double samples) {
   for (double& one : moment_) {
     one *= share;
   }
-  for (double* const sum : {&rows_, &weight_, &square_, &widths_at_, &served_at_}) {
+  for (double* const sum : {&rows_, &weight_, &square_, &widths_at_}) {
     *sum *= share;
   }
+  task_ = Task::none;  // a solve at hand is of more rows than there are now
+  round_ = 0;
+  served_at_ = 0.0;
 }
 
 void Posterior::change_features(std::size_t first, const Matrix& t) {
