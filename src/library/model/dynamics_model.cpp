@@ -69,7 +69,7 @@ bool still_named(std::span<const Finding> findings, std::size_t command, double 
          (last.state == FindingState::ambiguous && is_thrust(last.rival));
 }
 
-// Whether a committee reacts to changes on every axis.
+// Whether the learner of every axis follows changes of the vehicle.
 bool adapts(const ModelSettings& settings) {
   return settings.shared.learner != LearnerKind::svr &&
          std::ranges::all_of(settings.axes, [](const OnlineSvrSettings& axis) {

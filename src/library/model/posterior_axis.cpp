@@ -231,13 +231,14 @@ void PosteriorAxis::serve() {
   std::ranges::transform(theta.subspan(first), beta_.begin(),
                          [&](double weight) { return weight / scaling_.target.scale; });
   features_.basis().to_kernel(beta_);
-  TermWeights errors(terms().size());
-  for (std::size_t k = 0; k < errors.size(); ++k) {
-    errors[k] = posterior_.error(k + 1) * scaling_.term_scale[k] / scaling_.target.scale;
+  TermWeights errors(first);
+  for (std::size_t k = 0; k < first; ++k) {
+    errors[k] = posterior_.error(k);
   }
+  errors = in_scale(errors, 0.0);
   mixture_.assign_posterior(features_.basis().centres(), beta_,
                             as_span(scaled(theta.first(first), posterior_.centre())),
-                            as_span(errors));
+                            as_span(errors).first(terms().size()));
   mixture_.assign_terms(as_span(scaled(posterior_.first_weights(), posterior_.centre())));
   const double of_known = posterior_.targets(prior_).mean - posterior_.targets().mean;
   const double mean = scaling_.target.apply(posterior_.centre() + of_known);

@@ -146,17 +146,20 @@ void Mixture::move(const SampleMap& map) {
   seen_.rescale(target.gain, target.offset);
   seen_terms_.rescale(factors.last(kernel.terms()));
   limit();
+  move_paper(map);
+  serve();
+}
+
+void Mixture::move_paper(const SampleMap& map) {
   paper_.move(map);
   mix_.members[kOfPaper].function.clear();
-  serve();
 }
 
 void Mixture::tell_anew(std::span<const double> step) {
   const std::size_t inputs = mix_.members[kOfPosterior].function.kernel().inputs();
-  paper_.move([&](std::span<double> sample, double& y) {
+  move_paper([&](std::span<double> sample, double& y) {
     y += dot(step.first(step.size() - 1), sample.subspan(inputs)) + step.back();
   });
-  mix_.members[kOfPaper].function.clear();
   shares_.halve_evidence();
   serve();
 }

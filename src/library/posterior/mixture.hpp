@@ -85,6 +85,7 @@ class Mixture {
   void score(std::span<const double> z, double y, std::size_t block);
   void assign_linear(Place member, std::span<const double> weights);
   void see(std::span<const double> z, double y);
+  void move_paper(const SampleMap& map);
   void limit();
   void serve();
 

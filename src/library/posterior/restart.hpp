@@ -31,8 +31,8 @@ class Restart {
   std::size_t first_row() const { return row_; }
   double begin_s() const { return begin_s_; }
 
-  /// Scores what both posteriors say of the row of the time t, then learns the row. `phi`: its
-  /// features, those of the terms first.
+  /// Scores what both posteriors say of the row of the time t, then learns the row. `phi`: features
+  /// of the row, those of the terms first.
   void update(std::span<const double> phi, double y, double t, double trust, const Posterior& live,
               std::span<const std::uint8_t> group);
 

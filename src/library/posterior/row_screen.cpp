@@ -35,7 +35,7 @@ void RowScreen::add(const RecentRows::Row& row, const Features& features,
   }
   last_waits_ = live.surprise(phi, row.left) > kPosterior.surprise;
   learned_s_ += last_waits_ ? 0.0 : step;
-  begin_restarts(row.t, last_waits_);
+  begin_restarts(row.t);
   if (last_waits_) {
     waits_s_ = waiting() ? waits_s_ : row.t;
     waited_s_ = row.t;
@@ -53,9 +53,10 @@ void RowScreen::add(const RecentRows::Row& row, const Features& features,
 }
 
 // Before the row of the time t is kept.
-void RowScreen::begin_restarts(double t, bool waits) {
-  if (waits && !waiting() && !(restarts_[kRestarts].runs(t) && restarts_[kRestarts].leads())) {
-    restarts_[kRestarts].begin(rows_.end(), t, t + 2.0 * kPosterior.garbage_s);
+void RowScreen::begin_restarts(double t) {
+  Restart& last = restarts_[kRestarts];
+  if (last_waits_ && !waiting() && !(last.runs(t) && last.leads())) {
+    last.begin(rows_.end(), t, t + 2.0 * kPosterior.garbage_s);
   }
   const double due_s = kPosterior.first_restart_s * std::exp2(static_cast<double>(started_));
   if (started_ < kRestarts && t - first_s_ >= due_s) {
@@ -71,7 +72,8 @@ void RowScreen::run_restarts(const RecentRows::Row& row, const Features& feature
       one.update(phi, row.left, row.t, trust, live, features.groups());
     }
   }
-  if (Restart& last = restarts_[kRestarts]; last.runs(row.t) && last.leads()) {
+  Restart& last = restarts_[kRestarts];
+  if (last.runs(row.t) && last.leads()) {
     last.live_until(row.t + 2.0 * kPosterior.garbage_s);
   }
   const auto winner =
@@ -81,17 +83,22 @@ void RowScreen::run_restarts(const RecentRows::Row& row, const Features& feature
   if (winner == restarts_.rend()) {
     return;
   }
-  if (winner == restarts_.rbegin() &&
-      distance(winner->first_row(), true, features, live) < kPosterior.least_changed) {
+  if (&*winner == &last &&
+      distance(last.first_row(), true, features, live) < kPosterior.least_changed) {
     release(State::due_rare);  // teaches of places of which nothing was known
-    winner->end();
-    return;
+    last.end();
+  } else {
+    take_over(*winner);
   }
-  won_ = {.since_s = winner->begin_s(),
-          .is_change =
-              winner == restarts_.rbegin() && winner->begin_s() - first_s_ > kPosterior.garbage_s};
-  learned_s_ = row.t - won_->since_s;
-  next_ = winner->first_row();
+}
+
+// With the last row, a restart wins.
+void RowScreen::take_over(const Restart& winner) {
+  const Restart& last = restarts_[kRestarts];
+  won_ = {.since_s = winner.begin_s(),
+          .is_change = &winner == &last && winner.begin_s() - first_s_ > kPosterior.garbage_s};
+  learned_s_ = last_s_ - won_->since_s;
+  next_ = winner.first_row();
   for (std::size_t i = rows_.begin(); i < rows_.end(); ++i) {
     rows_.state(i) = i < next_ ? State::done : State::due;
   }

@@ -37,7 +37,7 @@ class RowScreen {
   /// `terms`: the number of the first features, with the constant.
   RowScreen(std::size_t inputs, std::size_t terms);
 
-  /// A row arrives. `phi`: its features, which `live` has not learned yet.
+  /// A row arrives, of the features `phi`; `live` has not learned the row yet.
   void add(const RecentRows::Row& row, const Features& features, std::span<const double> phi,
            Posterior& live);
 
@@ -73,9 +73,10 @@ class RowScreen {
   static constexpr std::size_t kRestarts = 3;  ///< at the start, and one at rows that wait
 
   bool waiting() const { return waits_since_ < rows_.end(); }
-  void begin_restarts(double t, bool waits);
+  void begin_restarts(double t);
   void run_restarts(const RecentRows::Row& row, const Features& features,
                     std::span<const double> phi, const Posterior& live);
+  void take_over(const Restart& winner);
   void judge(const Features& features, const Posterior& live);
   double distance(std::size_t first, bool all, const Features& features, const Posterior& live);
   void release(State state);
