@@ -26,11 +26,16 @@ double weight_of(double surprise, Likelihood likelihood) {
   return 1.0;
 }
 
+// Terms may explain all of the target's variance, the kernel's functions what terms leave.
+double first_precision(std::size_t group) {
+  return group == FeatureGroup::kKernel ? kPosterior.kernel_precision : 1.0;
+}
+
 }  // namespace
 
 Posterior::Posterior(std::size_t capacity, std::size_t first)
     : gram_(capacity),
-      precision_(FeatureGroup::kMost, 1.0),
+      precision_(FeatureGroup::kMost),
       told_(first),
       sums_(capacity),
       factor_(capacity),
@@ -43,6 +48,7 @@ Posterior::Posterior(std::size_t capacity, std::size_t first)
     numbers->reserve(capacity);
   }
   scratch_.reserve(2 * capacity);
+  clear();
 }
 
 void Posterior::clear() {
@@ -53,7 +59,9 @@ void Posterior::clear() {
   origin_ = rows_ = weight_ = square_ = widths_at_ = centre_ = served_at_ = 0.0;
   informed_ = noise_ = spread_ = 1.0;
   correlation_ = ErrorCorrelation();
-  std::ranges::fill(precision_, 1.0);
+  for (std::size_t g = 0; g < FeatureGroup::kMost; ++g) {
+    precision_[g] = first_precision(g);
+  }
   task_ = Task::none;
   round_ = 0;
 }
@@ -298,10 +306,11 @@ void Posterior::update_widths(std::span<const std::uint8_t> group) {
   for (std::size_t g = 0; g < FeatureGroup::kMost; ++g) {
     const double informed = std::max(0.0, sums.at(g).features - precision_[g] * sums.at(g).trace);
     informed_ += informed;
-    const double weight =
-        g == FeatureGroup::kKernel ? kPosterior.kernel_hyperprior : kPosterior.hyperprior;
-    precision_[g] = std::clamp((informed + weight) / (sums.at(g).square + weight),
-                               kPosterior.least_precision, kPosterior.most_precision);
+    const bool of_kernel = g == FeatureGroup::kKernel;
+    const double weight = of_kernel ? kPosterior.kernel_hyperprior : kPosterior.hyperprior;
+    precision_[g] =
+        std::clamp((informed + weight) / (sums.at(g).square + weight / first_precision(g)),
+                   kPosterior.least_precision, kPosterior.most_precision);
   }
   widths_at_ = begun_.rows;
 }

@@ -38,8 +38,8 @@ struct FeatureGroup {
 /// A and b hold under any prior, so neither prior, noise nor scale has to be known beforehand:
 /// - Scale: D_i² = A_ii/Σw is the mean square of a feature, and the targets enter the solve as
 ///   deviations from their mean, in standard deviations. The first feature is the constant 1.
-/// - Widths of the prior by evidence: α_g ← (γ_g + h)/(|Dθ|_g² + h), γ_g = n_g − α_g tr Σ_gg, for
-///   each group g of n_g features; h makes a hyperprior of the width 1.
+/// - Widths of the prior by evidence: α_g ← (γ_g + h)/(|Dθ|_g² + h/α₀), γ_g = n_g − α_g tr Σ_gg,
+///   for each group g of n_g features; h makes a hyperprior of the precision α₀.
 /// - Independent samples: τ rows make one sample (ErrorCorrelation).
 /// - Likelihood, by the error e of the prediction before learning and d² = σ² + s², with s² the
 ///   variance of the prediction by the first features, for where nothing is known a large error is
