@@ -29,7 +29,7 @@ void Restart::begin(std::size_t row, double t, double until_s) {
 }
 
 void Restart::update(std::span<const double> phi, double y, double t, double trust,
-                     const Posterior& live, std::span<const std::uint8_t> group) {
+                     const Posterior& live, double alike, std::span<const std::uint8_t> group) {
   const std::span<const double> terms = phi.first(terms_);
   if (live.ready() && !scored_weights_.empty()) {
     const double error = y - value(live, phi);
@@ -41,8 +41,7 @@ void Restart::update(std::span<const double> phi, double y, double t, double tru
     scored_ += 1.0;
     const double own_tau =
         std::min(young_.rows_per_sample(), kPosterior.most_correlated * scored_ + 1.0);
-    evidence_ =
-        std::min(evidence_ + gain / std::max(live.rows_per_sample(), own_tau), kPosterior.nats);
+    evidence_ = std::min(evidence_ + gain / std::max(alike, own_tau), kPosterior.nats);
     sum_ += gain;
     rows_ += 1.0;
     if (evidence_ <= 0.0) {
