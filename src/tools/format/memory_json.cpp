@@ -241,7 +241,7 @@ std::string memory_json(const PastModelsFile& memory) {
 PastModelsFile parse_memory_json(const std::string& text, const std::string& source) {
   const Json json = file::parse_json(text, source);
   const JsonNode root(json, source, "");
-  const bool has_sums = root["version"].number() == kSumsVersion;
+  const bool has_sums = root["version"].number() >= kSumsVersion;
   root.require_format(kMemoryFormat, has_sums ? kSumsVersion : kSamplesVersion);
   PastModelsFile memory;
   if (has_sums) {
