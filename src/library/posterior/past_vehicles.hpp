@@ -62,7 +62,7 @@ class PastVehicles {
   /// The vehicle in service is this one from now on.
   void recall(const PastVehicle& vehicle);
 
-  /// On another axis a vehicle is back: here half of the evidence is enough for 36 s.
+  /// On another axis a vehicle is back: here a fifth of the evidence is enough for 36 s.
   void alert() { alerted_s_ = last_s_; }
 
   /// The vehicle in service since `since_s` [s] is another than the live posterior's, which is kept

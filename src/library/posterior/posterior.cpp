@@ -26,7 +26,7 @@ double weight_of(double surprise, Likelihood likelihood) {
   return 1.0;
 }
 
-// Terms may explain all of the target's variance, the kernel's functions what terms leave.
+// Of the prior: terms may explain all of the target's variance, the kernel a tenth.
 double first_precision(std::size_t group) {
   return group == FeatureGroup::kKernel ? kPosterior.kernel_precision : 1.0;
 }

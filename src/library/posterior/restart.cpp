@@ -27,7 +27,7 @@ void Restart::begin(std::size_t row, double t, double until_s) {
 }
 
 void Restart::update(std::span<const double> phi, double y, double t, double trust,
-                     const Posterior& live, std::span<const std::uint8_t> group) {
+                     const Posterior& live, double alike, std::span<const std::uint8_t> group) {
   const std::span<const double> terms = phi.first(terms_);
   if (live.ready() && !scored_weights_.empty()) {
     const double error = y - value(live, phi);
@@ -36,7 +36,7 @@ void Restart::update(std::span<const double> phi, double y, double t, double tru
     scored_ += 1.0;
     const double own_tau =
         std::min(young_.rows_per_sample(), kPosterior.most_correlated * scored_ + 1.0);
-    evidence_.add(gain, std::max(live.rows_per_sample(), own_tau));
+    evidence_.add(gain, std::max(alike, own_tau));
   }
   young_.add(terms, y, trust, Likelihood::student);
   if (young_.wants_solve()) {

@@ -31,9 +31,9 @@ class Restart {
   double begin_s() const { return begin_s_; }
 
   /// Scores what both posteriors say of the row of the time t, then learns the row. `phi`: features
-  /// of the row, those of the terms first.
+  /// of the row, those of the terms first; `alike`: rows of one independent sample, at least.
   void update(std::span<const double> phi, double y, double t, double trust, const Posterior& live,
-              std::span<const std::uint8_t> group);
+              double alike, std::span<const std::uint8_t> group);
 
   /// Whether the rows since the begin are those of another vehicle, or the first after garbage:
   /// the evidence is clear, and the restart as old as the live posterior, of `learned_s` seconds,

@@ -69,7 +69,10 @@ void RowScreen::run_restarts(const RecentRows::Row& row, const Features& feature
   const double trust = features.trust(row.x);
   for (Restart& one : restarts_) {
     if (one.runs(row.t)) {
-      one.update(phi, row.left, row.t, trust, live, features.groups());
+      // What garbage at the start has taught errs the same way for good.
+      const bool may_be_garbage = &one != &restarts_[kRestarts];
+      one.update(phi, row.left, row.t, trust, live, may_be_garbage ? 1.0 : live.rows_per_sample(),
+                 features.groups());
     }
   }
   Restart& last = restarts_[kRestarts];

@@ -321,6 +321,25 @@ TEST(PosteriorLearner, DropsABurstOfGarbage) {
   EXPECT_EQ(model.axis(0).status().tally.changes, 0);
 }
 
+// What a sensor says once spoils nothing beyond its row, however absurd.
+TEST(PosteriorLearner, OneAbsurdRowCostsNothing) {
+  const PlanarDrive clean = noisy_drive(800, 1.0);
+  DynamicsModel without = new_model();
+  learn(without, clean, 0, clean.x.size());
+  const double error = error_elsewhere(without);
+  for (const std::size_t row : {3U, 300U}) {
+    for (const double absurd : {-999.0, 1e7, 3.4e38, 1.7e308}) {
+      for (const bool in_target : {false, true}) {
+        PlanarDrive struck = clean;
+        (in_target ? struck.y[row][0] : struck.x[row][0]) = absurd;
+        DynamicsModel model = new_model();
+        learn(model, struck, 0, struck.x.size());
+        EXPECT_LT(error_elsewhere(model), error + 0.02) << row << ", " << absurd << in_target;
+      }
+    }
+  }
+}
+
 TEST(PosteriorLearner, ForgetsGarbageAtTheStart) {
   PlanarDrive drive = noisy_drive(600, 1.0);
   RandomStream random(4, "garbage");
