@@ -99,7 +99,7 @@ class DynamicsModel final : public OnlineModel {
 
   /// Gives an axis past models of an earlier run, for recall when their vehicle returns. Requires
   /// that nothing has been learned yet, inputs of the same number, order and units, no more models
-  /// than the setting `memory`, samples in each model, and finite numbers.
+  /// than the setting `memory`, and finite numbers. Throws InputError on models of another learner.
   void set_past_models(std::size_t axis, std::vector<StoredPastModel> models);
 
   /// The whole state as bytes: everything learned, and every input of the next update, but past
@@ -115,9 +115,10 @@ class DynamicsModel final : public OnlineModel {
 
   /// A model that continues to learn from a trained model, from the time `start_s` [s] on, with the
   /// settings of the trained model. The first predictions equal those of the trained model to the
-  /// solver's tolerance; of the member `memory` to about its usual error. Parts that a trained
-  /// model doesn't hold start anew: intervals, disturbance, steady part, past models, totals;
-  /// save() keeps them. Throws InputError on settings with other terms than the model's.
+  /// solver's tolerance; of the member `memory` and of `learner = posterior` to about the usual
+  /// error. Parts that a trained model doesn't hold start anew: intervals, disturbance, steady
+  /// part, past models, totals; save() keeps them. Throws InputError on settings with other terms
+  /// than the model's.
   static DynamicsModel resume_from(const TrainedModel& trained, double start_s = 0.0);
 
   /// Whether every axis has a model with a scale of its own. An early model is in service from the

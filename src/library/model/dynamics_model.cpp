@@ -29,7 +29,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "33";  // of the archive of all classes together
+constexpr const char* kStateVersion = "34";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -552,7 +552,7 @@ DynamicsModel DynamicsModel::resume_from(const TrainedModel& trained, double sta
     require(axis.scaling.term_scale.size() == terms, "terms",
             "give " + std::to_string(terms) + " physics terms; the trained model has " +
                 std::to_string(axis.scaling.term_scale.size()));
-    model.parts_->axes[i].resume_from(axis.scaling, axis.function, start_s);
+    model.parts_->axes[i].resume_from(axis, start_s);
   }
   return model;
 }

@@ -133,8 +133,8 @@ void GuardedAxis::expect_vehicle(std::vector<double> coefficients) {
   }
 }
 
-void GuardedAxis::resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) {
-  trusted().resume_from(scaling, said, t);
+void GuardedAxis::resume_from(const Snapshot& trained, double t) {
+  trusted().resume_from(trained.scaling, trained.function, t);
   candidate() = trusted();
   other_ = Other::none;
   candidate_serves_ = false;

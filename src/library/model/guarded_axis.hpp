@@ -92,6 +92,9 @@ class GuardedAxis final : public ModelAxis {
 
   /// DynamicsAxis::set_past_models().
   void set_past_models(std::vector<StoredPastModel> models) override {
+    for (const StoredPastModel& one : models) {
+      require(!one.targets.empty(), "past models", "hold no samples, which this learner needs");
+    }
     given_ = models;
     trusted().set_past_models(std::move(models));
   }
@@ -100,7 +103,7 @@ class GuardedAxis final : public ModelAxis {
   bool trusted_last() const override { return trusted_last_; }
 
   /// DynamicsAxis::resume_from().
-  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) override;
+  void resume_from(const Snapshot& trained, double t) override;
 
   void visit(Archive& archive) override;  ///< core/archive.hpp
 

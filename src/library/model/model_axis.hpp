@@ -46,7 +46,7 @@ class ModelAxis : public OnlineRegressor {
   virtual void expect_vehicle(std::vector<double> coefficients) = 0;
   virtual std::vector<StoredPastModel> past_models() const { return {}; }
   virtual void set_past_models(std::vector<StoredPastModel> models) = 0;
-  virtual void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) = 0;
+  virtual void resume_from(const Snapshot& trained, double t) = 0;
 
   /// The axis in service of a committee or of the paper's learner; throws InputError else.
   virtual const DynamicsAxis& dynamics_axis() const = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -14,6 +15,8 @@
 
 namespace kelpie {
 namespace {
+
+constexpr double kAll = std::numeric_limits<double>::infinity();  // samples
 
 SvrFunction empty_function(const Features& features) {
   const KernelBasis& basis = features.basis();
@@ -44,6 +47,7 @@ PosteriorAxis::PosteriorAxis(std::size_t inputs, const SharedSettings& shared,
     : features_(inputs, terms, states, centres_of(settings)),
       posterior_(features_.capacity(), features_.terms_end()),
       screen_(inputs, features_.terms_end()),
+      past_(features_.terms_end(), features_.capacity(), settings.past_models()),
       scaling_{.input = features_.units(),
                .target = {},
                .term_scale = std::vector<double>(terms.size(), 1.0)},
@@ -53,7 +57,7 @@ PosteriorAxis::PosteriorAxis(std::size_t inputs, const SharedSettings& shared,
                            KernelDensity::scott(inputs, centres_of(settings)))},
       uncertainty_(shared.coverage) {
   settings.validate();
-  beta_.reserve(features_.basis().centres().capacity());
+  scratch_.reserve(features_.capacity());
 }
 
 std::size_t PosteriorAxis::centres_of(const OnlineSvrSettings& settings) {
@@ -73,8 +77,14 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   uncertainty_.score(decision, y, t);
   trusted_last_ = features_.trust(x) == 1.0;
   const RecentRows::Row row{.x = x, .y = y, .left = y - expected(x), .t = t};
-  screen_.add(row, features_, features_.evaluate(x), posterior_);
+  const std::span<const double> phi = features_.evaluate(x);
+  if (const PastVehicle* const back =
+          past_.update(phi, row.left, t, features_.trust(x), posterior_)) {
+    recall(*back, decision);
+  }
+  screen_.add(row, features_, phi, posterior_);
   if (const std::optional<RowScreen::Won> won = screen_.won()) {
+    won->is_change ? past_.leave(posterior_, won->since_s, features_.groups()) : past_.begin();
     begin_anew();
     decision.changed = won->is_change;
     decision.changed_since = won->since_s;
@@ -86,7 +96,7 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
     }
   }
   if (posterior_.wants_solve() && posterior_.solve(features_.groups(), budget_)) {
-    const bool fits = has_scale_ && posterior_.targets(prior_).scale <
+    const bool fits = has_scale_ && posterior_.sums().targets(prior_).scale <
                                         kPosterior.outgrown * scaling_.target.scale;
     fits ? serve() : change_scale();
     decision.published = true;
@@ -101,6 +111,7 @@ void PosteriorAxis::begin_anew() {
   tally_.forgotten = tally_.accepted;
   posterior_.clear();
   features_.clear();
+  past_.forget_kernel();
   known_.samples.clear();
   known_.density.clear();
   far_s_ = 0.0;
@@ -113,6 +124,35 @@ void PosteriorAxis::begin_anew() {
       change_scale();
     }
   }
+}
+
+// The weights become those of the past vehicle. Where the past kernel is not known, what the kernel
+// says beside the terms stays.
+void PosteriorAxis::recall(const PastVehicle& back, Decision& decision) {
+  TermWeights first(features_.terms_end());
+  std::ranges::transform(back.posterior.weights(), posterior_.first_weights(), first.begin(),
+                         std::minus<>{});
+  first[0] += back.posterior.centre() - posterior_.centre();
+  const std::span<const double> live = posterior_.weights();
+  if (back.weights.empty()) {
+    const SampleSums& sums = back.posterior.sums();
+    tell_anew(as_span(first), first, kPosterior.kept);
+    posterior_.add(sums, back.rows_per_sample * std::min(1.0, kPosterior.kept / sums.rows));
+  } else {
+    scratch_.assign(back.weights.begin(), back.weights.end());
+    scratch_.resize(std::max(live.size(), scratch_.size()));
+    std::ranges::transform(live, scratch_, scratch_.begin(),
+                           [](double a, double b) { return b - a; });
+    scratch_[0] -= posterior_.centre();
+    tell_anew(scratch_, first, kAll);
+  }
+  screen_.believe_change(back.since_s);
+  past_.recall(back);
+  decision.changed = decision.returning = decision.published = true;
+  decision.changed_since = back.since_s;
+  decision.recalled = back.info.number;
+  ++tally_.changes;
+  ++tally_.recalls;
 }
 
 // What was learned becomes what would have been learned of the changed vehicle.
@@ -134,12 +174,20 @@ void PosteriorAxis::apply_change(std::span<const CommandGain> gains, std::span<c
       told[k] = (term_gain(terms(), k - 1, gains) - 1.0) * weight;
     }
   }
-  posterior_.tell_anew(as_span(told),
-                       news.changed ? kPosterior.kept : std::numeric_limits<double>::infinity());
   if (news.changed) {
+    past_.leave(posterior_, news.changed_since, features_.groups());
     screen_.believe_change(news.changed_since);
+  } else if (news.withdrawn) {
+    past_.come_back();
   }
-  mixture_.tell_anew(as_span(in_scale(told, told[0] / scaling_.target.scale)));
+  tell_anew(as_span(told), told, news.changed ? kPosterior.kept : kAll);
+}
+
+// `step`: of the weights; `first`: of the weights of the terms alone, which the targets of the
+// paper's learner follow.
+void PosteriorAxis::tell_anew(std::span<const double> step, const TermWeights& first, double kept) {
+  posterior_.tell_anew(step, as_span(first), kept);
+  mixture_.tell_anew(as_span(in_scale(first, first[0] / scaling_.target.scale)));
   serve();
   mixture_.freeze();
 }
@@ -162,6 +210,7 @@ void PosteriorAxis::learn(const RowScreen::Due& due) {
   const double trust = this->trust(x, t);
   if (const std::optional<Matrix> map = features_.observe(x, trust)) {
     posterior_.change_features(features_.terms_end(), *map);
+    past_.change_features(*map);
     known_.samples.clear();
     known_.density.clear();
     if (posterior_.ready()) {
@@ -187,10 +236,10 @@ double PosteriorAxis::expected(std::span<const double> x) const {
 // Inputs in the units of the kernel; terms and target by their sizes so far.
 void PosteriorAxis::change_scale() {
   AxisScaling next{.input = features_.units(),
-                   .target = posterior_.targets(prior_),
+                   .target = posterior_.sums().targets(prior_),
                    .term_scale = std::vector<double>(terms().size(), 1.0)};
   for (std::size_t k = 0; k < terms().size(); ++k) {
-    const double size = posterior_.root_mean_square(k + 1);
+    const double size = posterior_.sums().root_mean_square(k + 1);
     if (size > 0.0) {
       next.term_scale[k] = size;
     }
@@ -227,20 +276,20 @@ PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta,
 void PosteriorAxis::serve() {
   const std::span<const double> theta = posterior_.weights();
   const std::size_t first = features_.terms_end();
-  beta_.assign(features_.basis().size(), 0.0);  // centres that came since have no weight yet
-  std::ranges::transform(theta.subspan(first), beta_.begin(),
+  scratch_.assign(features_.basis().size(), 0.0);  // centres that came since have no weight yet
+  std::ranges::transform(theta.subspan(first), scratch_.begin(),
                          [&](double weight) { return weight / scaling_.target.scale; });
-  features_.basis().to_kernel(beta_);
+  features_.basis().to_kernel(scratch_);
   TermWeights errors(first);
   for (std::size_t k = 0; k < first; ++k) {
     errors[k] = posterior_.error(k);
   }
   errors = in_scale(errors, 0.0);
-  mixture_.assign_posterior(features_.basis().centres(), beta_,
+  mixture_.assign_posterior(features_.basis().centres(), scratch_,
                             as_span(scaled(theta.first(first), posterior_.centre())),
                             as_span(errors).first(terms().size()));
   mixture_.assign_terms(as_span(scaled(posterior_.first_weights(), posterior_.centre())));
-  const double of_known = posterior_.targets(prior_).mean - posterior_.targets().mean;
+  const double of_known = posterior_.sums().targets(prior_).mean - posterior_.sums().targets().mean;
   const double mean = scaling_.target.apply(posterior_.centre() + of_known);
   mixture_.assign_mean({&mean, 1});
 }
@@ -336,14 +385,70 @@ void PosteriorAxis::expect_vehicle(std::vector<double> coefficients) {
   mixture_.expect_vehicle();
 }
 
-void PosteriorAxis::set_past_models(std::vector<StoredPastModel> models) {
-  require(models.empty(), "learner", "'posterior' keeps no past models; 'committee' does");
+std::vector<StoredPastModel> PosteriorAxis::past_models() const {
+  PastVehicles all = past_;
+  all.leave(posterior_, last_s_, features_.groups());
+  std::vector<StoredPastModel> list;
+  for (const PastVehicle& one : all.vehicles()) {
+    SampleSums sums = one.posterior.sums();
+    sums.tell_anew(prior_);
+    list.push_back({.info = one.info,
+                    .inputs = {},
+                    .targets = {},
+                    .times_s = {},
+                    .rows_per_sample = one.rows_per_sample,
+                    .sums = sums.numbers()});
+  }
+  return list;
 }
 
-void PosteriorAxis::resume_from(const AxisScaling& /*scaling*/, const FunctionMix& /*said*/,
-                                double /*t*/) {
-  throw InputError("learner",
-                   "'posterior' goes on from a checkpoint or a saved state, not from a model");
+void PosteriorAxis::set_past_models(std::vector<StoredPastModel> models) {
+  const std::size_t terms = features_.terms_end();
+  const std::size_t numbers = SampleSums::count_numbers(terms);
+  require(
+      models.size() <= past_.most(), "past models",
+      std::to_string(models.size()) + " given; the settings keep " + std::to_string(past_.most()));
+  std::vector<double> unexpected = prior_;
+  std::ranges::transform(prior_, unexpected.begin(), std::negate<>{});
+  for (const StoredPastModel& one : models) {
+    const std::string name = "number " + std::to_string(one.info.number);
+    require(one.sums.size() == numbers, "past models",
+            name + " holds " + std::to_string(one.sums.size()) +
+                " sums; 'learner = posterior' needs " + std::to_string(numbers) + ", of " +
+                std::to_string(terms) + " terms");
+    SampleSums sums(terms);
+    sums.assign(terms, one.sums);
+    sums.tell_anew(unexpected);
+    require(past_.add(one.info, sums, one.rows_per_sample, features_.groups()), "past models",
+            name + " holds sums of no samples");
+  }
+}
+
+void PosteriorAxis::resume_from(const Snapshot& trained, double t) {
+  require(trained.known.has_value(), "known",
+          "is missing; 'learner = posterior' goes on from models with known places");
+  const SampleStore& places = trained.known->samples;
+  const double spread = std::isfinite(trained.half_width)
+                            ? kPosterior.deviations_per_width * trained.half_width
+                            : kPosterior.unknown_spread * trained.scaling.target.scale;
+  std::vector<double> z(places.dimension()), other(z);
+  for (std::size_t k = 0; places.size() > 0 && k < kPosterior.places_told; ++k) {
+    const std::size_t i = k % places.size();
+    places.get(i, z);
+    places.get((i + k / places.size()) % places.size(), other);
+    std::ranges::transform(z, other, z.begin(), [](double a, double b) { return 0.5 * (a + b); });
+    const ScaledInput x = trained.scaling.input.invert(z);
+    const double value = trained.predict(terms(), as_span(x));
+    for (const double y : {value - spread, value + spread}) {
+      learn(
+          {{.x = as_span(x), .y = y, .left = y - expected(as_span(x)), .t = t}, Likelihood::gauss});
+    }
+    if (posterior_.wants_solve()) {
+      settle(posterior_, features_.groups());
+      change_scale();
+    }
+  }
+  tally_ = {};
 }
 
 const DynamicsAxis& PosteriorAxis::dynamics_axis() const {
@@ -354,6 +459,7 @@ void PosteriorAxis::visit(Archive& archive) {
   archive.part("features", features_);
   archive.part("posterior", posterior_);
   archive.part("screen", screen_);
+  archive.part("past vehicles", past_);
   archive.list(prior_, terms().size() + 1, [&](double& one) { archive.number(one); });
   uncertainty_.visit(archive);
   archive.number(last_s_);
@@ -377,9 +483,10 @@ std::size_t PosteriorAxis::bytes(std::size_t inputs, std::size_t terms,
                                  const OnlineSvrSettings& settings) {
   const std::size_t centres = centres_of(settings);
   return sizeof(PosteriorAxis) + Posterior::bytes(centres + terms + 1, terms + 1) +
-         RowScreen::bytes(inputs, terms + 1) + centres * (centres + 1) / 2 * sizeof(double) +
-         2 * SampleStore::bytes(inputs, centres) + KernelDensity::bytes(inputs, centres) +
-         Mixture::bytes(inputs, terms, centres, settings);
+         RowScreen::bytes(inputs, terms + 1) +
+         PastVehicles::bytes(terms + 1, centres + terms + 1, settings.past_models()) +
+         centres * (centres + 1) / 2 * sizeof(double) + 2 * SampleStore::bytes(inputs, centres) +
+         KernelDensity::bytes(inputs, centres) + Mixture::bytes(inputs, terms, centres, settings);
 }
 
 }  // namespace kelpie

@@ -13,6 +13,7 @@
 #include "model/uncertainty.hpp"
 #include "posterior/features.hpp"
 #include "posterior/mixture.hpp"
+#include "posterior/past_vehicles.hpp"
 #include "posterior/posterior.hpp"
 #include "posterior/row_screen.hpp"
 
@@ -38,6 +39,11 @@ class PosteriorAxis final : public ModelAxis {
     return std::make_unique<PosteriorAxis>(*this);
   }
   Decision update(std::span<const double> x, double y, double t) override;
+  void alert(double /*since_s*/, bool another) override {
+    if (!another) {
+      past_.alert();
+    }
+  }
   void limit(const Budget& budget) override {
     budget_ = budget;
     mixture_.limit(budget);
@@ -66,10 +72,12 @@ class PosteriorAxis final : public ModelAxis {
   /// The prior's mean: coefficients of the terms, the last of the term 1. Requires that nothing has
   /// been learned yet.
   void expect_vehicle(std::vector<double> coefficients) override;
-  /// Throws InputError: past models are the paper's learner's.
+  /// The vehicles left, and the one in service.
+  std::vector<StoredPastModel> past_models() const override;
   void set_past_models(std::vector<StoredPastModel> models) override;
-  /// Throws InputError: the sums of a posterior are not in a trained model.
-  void resume_from(const AxisScaling& scaling, const FunctionMix& said, double t) override;
+  /// Learns what the function says at the places known, and half-way between these, each a
+  /// deviation of the errors above and below: 2,000 rows.
+  void resume_from(const Snapshot& trained, double t) override;
   const AxisScaling* scaling() const override { return has_scale_ ? &scaling_ : nullptr; }
   const DynamicsAxis& dynamics_axis() const override;  ///< Throws InputError.
 
@@ -83,16 +91,19 @@ class PosteriorAxis final : public ModelAxis {
   double trust(std::span<const double> x, double t);
   void learn(const RowScreen::Due& due);
   void begin_anew();
+  void recall(const PastVehicle& back, Decision& decision);
   void change_scale();
   TermWeights in_scale(TermWeights weights, double bias) const;
   TermWeights scaled(std::span<const double> theta, double centre) const;
+  void tell_anew(std::span<const double> step, const TermWeights& first, double kept);
   void serve();
   std::size_t block_length() const;
   void know_centres();
 
   Features features_;
-  Posterior posterior_;        ///< of the targets less what was expected()
-  RowScreen screen_;           ///< which rows are learned
+  Posterior posterior_;  ///< of the targets less what was expected()
+  RowScreen screen_;     ///< which rows are learned
+  PastVehicles past_;
   std::vector<double> prior_;  ///< the prior's mean of the first features; empty: 0
   AxisScaling scaling_;        ///< of the mixture
   bool has_scale_ = false;     ///< after the first solve
@@ -104,7 +115,7 @@ class PosteriorAxis final : public ModelAxis {
   bool trusted_last_ = true;
   Tally tally_;
   Budget budget_;
-  RoomyVector<double> beta_;  ///< scratch
+  RoomyVector<double> scratch_;  ///< a number per feature
 };
 
 }  // namespace kelpie

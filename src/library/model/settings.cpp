@@ -70,7 +70,7 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
 });
 
 // Of the committee and the paper's learner, which `learner = posterior` has no use for.
-constexpr std::array<std::string_view, 4> kIdleInPosterior{"scaling", "track", "warmup", "memory"};
+constexpr std::array<std::string_view, 3> kIdleInPosterior{"scaling", "track", "warmup"};
 
 // Settings of older files, and what to write instead.
 constexpr std::array kRemoved = std::to_array<std::pair<std::string_view, std::string_view>>({

@@ -34,7 +34,7 @@ double first_precision(std::size_t group) {
 }  // namespace
 
 Posterior::Posterior(std::size_t capacity, std::size_t first)
-    : gram_(capacity),
+    : seen_(capacity),
       precision_(FeatureGroup::kMost),
       told_(first),
       sums_(capacity),
@@ -44,7 +44,7 @@ Posterior::Posterior(std::size_t capacity, std::size_t first)
       first_scale_(first, 1.0) {
   first_factor_.resize(first);
   for (RoomyVector<double>* const numbers :
-       {&moment_, &scale_, &right_, &theta_, &variance_, &weights_, &errors_}) {
+       {&scale_, &right_, &theta_, &variance_, &weights_, &errors_}) {
     numbers->reserve(capacity);
   }
   scratch_.reserve(2 * capacity);
@@ -52,11 +52,10 @@ Posterior::Posterior(std::size_t capacity, std::size_t first)
 }
 
 void Posterior::clear() {
-  gram_.resize(0);
-  moment_.clear();
+  seen_.clear();
   weights_.clear();
   errors_.clear();
-  origin_ = rows_ = weight_ = square_ = widths_at_ = centre_ = served_at_ = 0.0;
+  widths_at_ = centre_ = served_at_ = 0.0;
   informed_ = noise_ = spread_ = 1.0;
   correlation_ = ErrorCorrelation();
   for (std::size_t g = 0; g < FeatureGroup::kMost; ++g) {
@@ -75,7 +74,7 @@ double Posterior::surprise(std::span<const double> phi, double y) {
 }
 
 void Posterior::add(std::span<const double> phi, double y, double trust, Likelihood likelihood) {
-  if (rows_ >= kPosterior.first_rows && !differ() && y == origin_) {
+  if (seen_.rows >= kPosterior.first_rows && !differ() && y == seen_.origin) {
     return;  // at rest: more of the same would outvote the vehicle that sets off
   }
   double weight = trust;
@@ -84,15 +83,14 @@ void Posterior::add(std::span<const double> phi, double y, double trust, Likelih
     correlation_.add(std::clamp(error, -kPosterior.most_deviations, kPosterior.most_deviations));
     weight *= weight_of(surprise(phi, y), likelihood);
   }
-  origin_ = rows_ == 0.0 ? y : origin_;
-  y -= origin_;
-  gram_.resize(phi.size());
-  moment_.resize(phi.size());
-  gram_.add_square(weight, phi);
-  add_scaled(weight * y, phi, {moment_.data(), moment_.size()});
-  rows_ += 1.0;
-  weight_ += weight;
-  square_ += weight * y * y;
+  seen_.add(phi, y, weight);
+}
+
+void Posterior::add(const SampleSums& others, double share) {
+  seen_.add(others, first_.size(), share);
+  task_ = Task::none;
+  round_ = 0;
+  widths_at_ = served_at_ = 0.0;
 }
 
 double value(const Posterior& posterior, std::span<const double> phi) {
@@ -115,37 +113,17 @@ double Posterior::error(std::size_t feature) const {
   return feature < errors_.size() ? errors_[feature] : std::numeric_limits<double>::infinity();
 }
 
-TargetScaling Posterior::targets(std::span<const double> known) const {
-  if (weight_ == 0.0) {
-    return {};
-  }
-  double sum = moment_[0];
-  double square = square_;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    const std::span<const double> row = gram_.row(i);
-    sum += known[i] * row[0];
-    square +=
-        known[i] * (2.0 * moment_[i] + 2.0 * dot(row.first(i), known.first(i)) + known[i] * row[i]);
-  }
-  const double mean = sum / weight_;
-  const double variance = square / weight_ - mean * mean;
-  return {origin_ + mean, std::sqrt(std::max(variance, std::numeric_limits<double>::min()))};
-}
-
-double Posterior::root_mean_square(std::size_t feature) const {
-  return std::sqrt(gram_.diagonal(feature) / weight_);
-}
-
 // Targets that never differed tell nothing, and have no unit.
 bool Posterior::differ() const {
-  return targets().scale > std::max(1e-150, kPosterior.least_deviation * std::abs(origin_));
+  return seen_.targets().scale >
+         std::max(1e-150, kPosterior.least_deviation * std::abs(seen_.origin));
 }
 
 bool Posterior::wants_solve() const {
   const double enough =
-      std::max(kPosterior.rows_per_feature * static_cast<double>(gram_.size()),
-               std::min(kPosterior.solve_share * rows_, kPosterior.most_unsolved));
-  const bool is_due = rows_ >= kPosterior.first_rows && rows_ - served_at_ >= enough;
+      std::max(kPosterior.rows_per_feature * static_cast<double>(seen_.gram.size()),
+               std::min(kPosterior.solve_share * seen_.rows, kPosterior.most_unsolved));
+  const bool is_due = seen_.rows >= kPosterior.first_rows && seen_.rows - served_at_ >= enough;
   return task_ != Task::none || (is_due && differ());
 }
 
@@ -169,21 +147,13 @@ void settle(Posterior& posterior, std::span<const std::uint8_t> group) {
 }
 
 void Posterior::assign_first(const Posterior& other) {
-  const std::size_t m = first_.size();
-  origin_ = other.origin_;
-  rows_ = other.rows_;
-  weight_ = other.weight_;
-  square_ = other.square_;
+  seen_.clear();
+  seen_.add(other.seen_, first_.size(), 1.0);
   correlation_ = other.correlation_;
   precision_ = other.precision_;
   noise_ = other.noise_;
   widths_at_ = 0.0;
   weights_.clear();
-  gram_.resize(m);
-  for (std::size_t i = 0; i < m; ++i) {
-    std::ranges::copy(other.gram_.row(i), gram_.row(i).begin());
-  }
-  moment_.assign(other.moment_.begin(), other.moment_.begin() + static_cast<std::ptrdiff_t>(m));
 }
 
 double Posterior::distance(const Posterior& other) {
@@ -195,22 +165,22 @@ double Posterior::distance(const Posterior& other) {
     difference[i] = other.weights_[i] - weights_[i];
   }
   difference[0] += other.centre_ - centre_;
-  gram_.multiply(difference, product);
+  seen_.gram.multiply(difference, product);
   const std::span<const double> known = difference;
-  return dot(known, std::span<const double>(product)) / (weight_ * noise());
+  return dot(known, std::span<const double>(product)) / (seen_.weight * noise());
 }
 
 // The sums may go on growing while the solve is at hand.
 void Posterior::begin_solve(std::span<const std::uint8_t> group) {
-  const std::size_t m = gram_.size();
-  const TargetScaling targets = this->targets();
-  const double mean = targets.mean - origin_;
-  begun_ = {.rows = rows_,
+  const std::size_t m = seen_.gram.size();
+  const TargetScaling targets = seen_.targets();
+  const double mean = targets.mean - seen_.origin;
+  begun_ = {.rows = seen_.rows,
             .rows_per_sample =
-                std::clamp(correlation_.rows_per_sample(), 1.0, std::max(1.0, rows_ / 20.0)),
+                std::clamp(correlation_.rows_per_sample(), 1.0, std::max(1.0, seen_.rows / 20.0)),
             .centre = targets.mean,
             .spread = targets.scale,
-            .square = weight_};
+            .square = seen_.weight};
   for (RoomyVector<double>* const numbers : {&scale_, &right_, &theta_, &variance_, &scratch_}) {
     numbers->assign(m, 0.0);
   }
@@ -219,12 +189,12 @@ void Posterior::begin_solve(std::span<const std::uint8_t> group) {
   factor_.resize(m);
   const double information = 1.0 / (noise_ * begun_.rows_per_sample);
   for (std::size_t i = 0; i < m; ++i) {
-    const double square = gram_.diagonal(i) / weight_;
+    const double square = seen_.gram.diagonal(i) / seen_.weight;
     // A feature without a value yet keeps the prior.
     scale_[i] = square > std::numeric_limits<double>::min() ? std::sqrt(square) : 1e150;
-    right_[i] = (moment_[i] - mean * gram_.row(i)[0]) / (scale_[i] * begun_.spread);
+    right_[i] = (seen_.moment[i] - mean * seen_.gram.row(i)[0]) / (scale_[i] * begun_.spread);
     for (std::size_t j = 0; j <= i; ++j) {
-      sums_.row(i)[j] = gram_.row(i)[j] / (scale_[i] * scale_[j]);
+      sums_.row(i)[j] = seen_.gram.row(i)[j] / (scale_[i] * scale_[j]);
       factor_.row(i)[j] = information * sums_.row(i)[j];
     }
     factor_.row(i)[i] += group[i] == FeatureGroup::kFlat ? kPosterior.flat : precision_[group[i]];
@@ -350,43 +320,48 @@ void Posterior::serve() {
   served_at_ = begun_.rows;
 }
 
-void Posterior::tell_anew(std::span<const double> step, double kept) {
-  const double moved = dot(step, std::span<const double>(moment_.data(), step.size()));
-  for (std::size_t i = 0; i < gram_.size(); ++i) {
-    const std::span<const double> row = gram_.row(i);
-    for (std::size_t j = 0; j < std::min(step.size(), i + 1); ++j) {
-      moment_[i] += row[j] * step[j];
-      moment_[j] += i < step.size() && j < i ? row[j] * step[i] : 0.0;
-    }
+void Posterior::tell_anew(std::span<const double> step, std::span<const double> first,
+                          double kept) {
+  seen_.tell_anew(step);
+  if (ready()) {
+    weights_.resize(std::max(weights_.size(), step.size()));
+    as_vector(weights_).head(static_cast<Eigen::Index>(step.size())) += as_vector(step);
+    const auto terms = static_cast<Eigen::Index>(first.size());
+    as_vector(first_).head(terms) += as_vector(first);
+    as_vector(told_).head(terms) += as_vector(first);
   }
-  square_ += moved + dot(step, std::span<const double>(moment_.data(), step.size()));
-  for (std::size_t i = 0; ready() && i < step.size(); ++i) {
-    weights_[i] += step[i];
-    first_[i] += step[i];
-    told_[i] += step[i];
+  if (step.size() > first_.size()) {
+    task_ = Task::none;  // a solve at hand follows steps of the first features only
+    round_ = 0;
   }
   fade(kept);
 }
 
 void Posterior::fade(double samples) {
-  const double share = samples * rows_per_sample() / rows_;
+  const double share = samples * rows_per_sample() / seen_.rows;
   if (share >= 1.0) {
     return;
   }
-  gram_.scale(share);
-  for (double& one : moment_) {
-    one *= share;
-  }
-  for (double* const sum : {&rows_, &weight_, &square_, &widths_at_}) {
-    *sum *= share;
-  }
+  seen_.scale(share);
+  widths_at_ *= share;
   task_ = Task::none;  // a solve at hand is of more rows than there are now
   round_ = 0;
   served_at_ = 0.0;
 }
 
+void change_functions(RoomyVector<double>& weights, std::size_t first, const Matrix& t) {
+  weights.resize(first + t.rows());  // a function that came since has no weight
+  const auto map = as_matrix(t);
+  const Eigen::MatrixXd square = map.transpose() * map;
+  const auto functions = static_cast<Eigen::Index>(t.rows());
+  const Eigen::VectorXd right = map.transpose() * as_vector(weights).tail(functions);
+  const Eigen::VectorXd changed = solve_symmetric(square, right);
+  weights.resize(first);
+  weights.insert(weights.end(), changed.begin(), changed.end());
+}
+
 void Posterior::change_features(std::size_t first, const Matrix& t) {
-  const auto m = static_cast<Eigen::Index>(gram_.size());
+  const auto m = static_cast<Eigen::Index>(seen_.gram.size());
   const auto terms = static_cast<Eigen::Index>(first);
   const auto wider = static_cast<Eigen::Index>(t.columns());
   Eigen::MatrixXd map = Eigen::MatrixXd::Zero(m, terms + wider);
@@ -394,27 +369,22 @@ void Posterior::change_features(std::size_t first, const Matrix& t) {
   map.bottomRightCorner(m - terms, wider) = as_matrix(t).topRows(m - terms);
   Eigen::MatrixXd gram(m, m);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const std::span<const double> row = gram_.row(static_cast<std::size_t>(i));
+    const std::span<const double> row = seen_.gram.row(static_cast<std::size_t>(i));
     for (Eigen::Index j = 0; j <= i; ++j) {
       gram(i, j) = gram(j, i) = row[static_cast<std::size_t>(j)];
     }
   }
   const Eigen::MatrixXd moved = map.transpose() * gram * map;
-  const Eigen::VectorXd moment = map.transpose() * as_vector(moment_);
-  gram_.resize(static_cast<std::size_t>(moved.rows()));
-  moment_.assign(moment.begin(), moment.end());
-  for (std::size_t i = 0; i < gram_.size(); ++i) {
+  const Eigen::VectorXd moment = map.transpose() * as_vector(seen_.moment);
+  seen_.gram.resize(static_cast<std::size_t>(moved.rows()));
+  seen_.moment.assign(moment.begin(), moment.end());
+  for (std::size_t i = 0; i < seen_.gram.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      gram_.row(i)[j] = moved(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      seen_.gram.row(i)[j] = moved(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
     }
   }
   if (ready()) {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(m);
-    all.head(static_cast<Eigen::Index>(weights_.size())) = as_vector(weights_);
-    const Eigen::MatrixXd square = map.transpose() * map;
-    const Eigen::VectorXd right = map.transpose() * all;
-    const Eigen::VectorXd weights = solve_symmetric(square, right);
-    weights_.assign(weights.begin(), weights.end());
+    change_functions(weights_, first, t);
   }
   task_ = Task::none;
   errors_.resize(std::min(errors_.size(), first));
@@ -431,11 +401,10 @@ void Posterior::visit(Archive& archive) {
   const auto list = [&](RoomyVector<double>& numbers) {
     archive.list(numbers, numbers.capacity(), [&](double& one) { archive.number(one); });
   };
-  archive.part("sums", gram_);
-  list(moment_);
-  for (double* const one : {&origin_, &rows_, &weight_, &square_, &informed_, &noise_, &widths_at_,
-                            &centre_, &spread_, &served_at_, &begun_.rows, &begun_.rows_per_sample,
-                            &begun_.centre, &begun_.spread, &begun_.square}) {
+  archive.part("sums", seen_);
+  for (double* const one :
+       {&informed_, &noise_, &widths_at_, &centre_, &spread_, &served_at_, &begun_.rows,
+        &begun_.rows_per_sample, &begun_.centre, &begun_.spread, &begun_.square}) {
     archive.number(*one);
   }
   archive.part("correlation", correlation_);

@@ -12,6 +12,7 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/svr/resources.hpp"
 #include "learner/error_correlation.hpp"
+#include "posterior/sample_sums.hpp"
 #include "posterior/triangle.hpp"
 
 namespace kelpie {
@@ -62,6 +63,10 @@ class Posterior {
   /// phi[0] = 1 and finite numbers. Cost O(m²).
   void add(std::span<const double> phi, double y, double trust, Likelihood likelihood);
 
+  /// Learns the samples of sums by their first features, each with `share` of its weight. Cost
+  /// O(n²) for n first features.
+  void add(const SampleSums& others, double share);
+
   /// e²/d² of a sample before learning; 0 without a model. Cost O(m).
   double surprise(std::span<const double> phi, double y);
 
@@ -87,20 +92,17 @@ class Posterior {
   /// Of the first features without the others: the posterior of the leading block of M.
   std::span<const double> first_weights() const { return first_; }
   /// The mean of the targets at the last solve; before the first, so far.
-  double centre() const { return ready() ? centre_ : targets().mean; }
+  double centre() const { return ready() ? centre_ : seen_.targets().mean; }
   /// Standard error of a weight at the last step of the evidence; infinite before.
   double error(std::size_t feature) const;
-  /// Mean and standard deviation of the targets so far, plus `known` · φ of the first features; 0
-  /// and 1 without samples. Cost O(known.size()²).
-  TargetScaling targets(std::span<const double> known = {}) const;
-  double root_mean_square(std::size_t feature) const;  ///< Of the samples so far.
+  const SampleSums& sums() const { return seen_; }  ///< Of the samples so far.
   double rows_per_sample() const { return correlation_.rows_per_sample(); }  ///< τ
   double noise() const { return noise_ * spread_ * spread_; }  ///< σ², squared unit of the target.
 
-  /// The samples become those of a vehicle with other weights of the first features: each target
-  /// grows by stepᵀφ, and weights in service follow. From then on, samples so far weigh as `kept`
-  /// independent ones, at most. Cost O(m²).
-  void tell_anew(std::span<const double> step, double kept);
+  /// The samples become those of a vehicle with other weights: each target grows by stepᵀφ, and
+  /// weights in service follow, those of the first features alone by `first`. From then on, samples
+  /// so far weigh as `kept` independent ones, at most. Cost O(m²).
+  void tell_anew(std::span<const double> step, std::span<const double> first, double kept);
 
   /// The features from the number `first` on become others, φ' = Tᵀ φ, and the sums TᵀAT and Tᵀb.
   /// Weights follow as far as T allows, until the next solve. Allocates. Cost O(m³).
@@ -125,12 +127,7 @@ class Posterior {
   void update_noise();
   void serve();
 
-  double origin_ = 0.0;         ///< the first target: sums hold differences from it
-  Triangle gram_;               ///< A
-  RoomyVector<double> moment_;  ///< b
-  double rows_ = 0.0;
-  double weight_ = 0.0;  ///< Σ w
-  double square_ = 0.0;  ///< Σ w y²
+  SampleSums seen_;
   ErrorCorrelation correlation_;
 
   // Prior and noise, in deviations of the target.
@@ -169,6 +166,10 @@ class Posterior {
 
 /// centre() + θᵀφ; the mean of the targets before the first solve. Cost O(m).
 double value(const Posterior& posterior, std::span<const double> phi);
+
+/// The weights of functions become those of Posterior::change_features(), as far as T allows.
+/// Allocates. Cost O(m³).
+void change_functions(RoomyVector<double>& weights, std::size_t first, const Matrix& t);
 
 /// Solves at once, without a budget. Cost O(m³).
 void settle(Posterior& posterior, std::span<const std::uint8_t> group);

@@ -2,8 +2,6 @@
 #include "posterior/restart.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/vector.hpp"
@@ -34,19 +32,11 @@ void Restart::update(std::span<const double> phi, double y, double t, double tru
   if (live.ready() && !scored_weights_.empty()) {
     const double error = y - value(live, phi);
     const double own = y - dot({scored_weights_.data(), terms_}, terms);
-    const double floor = kPosterior.least_error * std::min(live.noise(), young_.noise()) +
-                         std::numeric_limits<double>::min();
-    const double ratio = 0.5 * std::log((error * error + floor) / (own * own + floor));
-    const double gain = std::clamp(ratio, -kPosterior.most_ratio, kPosterior.most_ratio);
+    const double gain = Evidence::gain(error, own, std::min(live.noise(), young_.noise()));
     scored_ += 1.0;
     const double own_tau =
         std::min(young_.rows_per_sample(), kPosterior.most_correlated * scored_ + 1.0);
-    evidence_ = std::min(evidence_ + gain / std::max(alike, own_tau), kPosterior.nats);
-    sum_ += gain;
-    rows_ += 1.0;
-    if (evidence_ <= 0.0) {
-      forget_evidence();
-    }
+    evidence_.add(gain, std::max(alike, own_tau));
   }
   young_.add(terms, y, trust, Likelihood::student);
   if (young_.wants_solve()) {
@@ -67,8 +57,7 @@ void Restart::keep_weights(double t) {
 }
 
 bool Restart::wins(double t, double learned_s) const {
-  return evidence_ >= kPosterior.nats && sum_ > kPosterior.nats_per_row * rows_ &&
-         t - begin_s_ > std::min(kPosterior.garbage_s, learned_s);
+  return evidence_.is_clear() && t - begin_s_ > std::min(kPosterior.garbage_s, learned_s);
 }
 
 void Restart::visit(Archive& archive) {
@@ -77,9 +66,10 @@ void Restart::visit(Archive& archive) {
     archive.list(*weights, terms_, [&](double& one) { archive.number(one); });
   }
   archive.whole(row_);
-  for (double* const one : {&kept_s_, &begin_s_, &until_s_, &scored_, &evidence_, &sum_, &rows_}) {
+  for (double* const one : {&kept_s_, &begin_s_, &until_s_, &scored_}) {
     archive.number(*one);
   }
+  archive.part("evidence", evidence_);
 }
 
 }  // namespace kelpie

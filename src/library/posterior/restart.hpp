@@ -7,16 +7,15 @@
 
 #include "core/roomy_vector.hpp"
 #include "kelpie/core/archive.hpp"
+#include "posterior/evidence.hpp"
 #include "posterior/posterior.hpp"
 #include "posterior/tuning.hpp"
 
 namespace kelpie {
 
 /// A posterior of the terms alone that learns the rows since a later row, against the live
-/// posterior of all rows. The evidence for the restart is the logarithm of the ratio of both
-/// errors, at most 2 a row, in independent samples, since it was 0 last (CUSUM: Page 1954), and at
-/// most what is enough to win. The restart's errors are those of its weights 2 s ago or more, for
-/// neighbouring rows resemble each other. Allocates in the constructor only.
+/// posterior of all rows (Evidence). The restart's errors are those of its weights 2 s ago or more,
+/// for neighbouring rows resemble each other. Allocates in the constructor only.
 class Restart {
  public:
   explicit Restart(std::size_t terms);
@@ -41,9 +40,9 @@ class Restart {
   /// or older than garbage lasts.
   bool wins(double t, double learned_s) const;
 
-  bool leads() const { return evidence_ > kPosterior.nats_per_row; }  ///< Evidence is left.
+  bool leads() const { return evidence_.leads(); }  ///< Evidence is left.
 
-  void forget_evidence() { evidence_ = sum_ = rows_ = 0.0; }
+  void forget_evidence() { evidence_.clear(); }
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -59,9 +58,9 @@ class Restart {
   RoomyVector<double> scored_weights_, next_weights_;  ///< 2 s ago or more, and later
   double kept_s_ = 0.0;                                ///< time of the latter [s]
   std::size_t row_ = 0;
-  double begin_s_ = 0.0, until_s_ = 0.0;            ///< [s]
-  double scored_ = 0.0;                             ///< rows
-  double evidence_ = 0.0, sum_ = 0.0, rows_ = 0.0;  ///< [nat]; since the evidence was 0
+  double begin_s_ = 0.0, until_s_ = 0.0;  ///< [s]
+  double scored_ = 0.0;                   ///< rows
+  Evidence evidence_;
 };
 
 }  // namespace kelpie

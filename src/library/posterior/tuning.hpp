@@ -22,7 +22,7 @@ inline constexpr struct PosteriorTuning {
   int young_rounds = 3;
   double hyperprior = 0.01;        ///< h of groups of terms; chosen on lab/random_vehicles.py
   double kernel_hyperprior = 0.3;  ///< h of the kernel; chosen on ../data/vehicles
-  double kernel_precision = 3.0;   ///< α₀ of the kernel; chosen on lab/random_vehicles.py
+  double kernel_precision = 10.0;  ///< α₀ of the kernel; chosen on lab/random_vehicles.py
   double noise_prior = 0.1;        ///< σ² of one sample before all others; by hand
   double least_freedom = 0.3;      ///< share of samples that the noise keeps; by hand
   double least_noise = 1e-8, most_noise = 2.0;  ///< σ² per variance of the target
@@ -51,8 +51,13 @@ inline constexpr struct PosteriorTuning {
   double nats = 10.0, nats_per_row = 0.7;  ///< of a restart that wins; by hand
   double most_ratio = 2.0;                 ///< logarithm of a ratio of errors; by hand
   double least_error = 0.02;     ///< square of an error, in variances of the noise; by hand
-  double most_correlated = 0.2;  ///< τ of a restart, per row; by hand
+  double most_correlated = 0.2;  ///< τ of a young posterior, per row; by hand
   double kept = 50.0;  ///< independent samples of before a change; from 50, 150, 1,000 on ../data
+  std::size_t places_told = 1000;     ///< of a trained model; from 300 to 3,000 on a plant
+  double deviations_per_width = 0.5;  ///< of errors, per half an interval of 90 %; by hand
+  double unknown_spread = 0.3;        ///< of errors, per deviation of the target; by hand
+  /// Share of the evidence that is enough after another axis' vehicle is back; chosen on a plant.
+  double alerted = 0.2;
   int rows_per_update = 4;  ///< rows learned later; by hand
 } kPosterior;
 

@@ -258,7 +258,8 @@ bool write_results(const fs::path& folder, const study::StreamResult& result,
 void write_memory(const std::string& file, const format::PastModelsFile& run,
                   const ModelSettings& settings) {
   const file::FolderLock lock(file);
-  format::PastModelsFile memory{.inputs = run.inputs, .units = run.units, .axes = {}};
+  format::PastModelsFile memory{
+      .inputs = run.inputs, .units = run.units, .terms = run.terms, .axes = {}};
   if (fs::exists(file)) {
     memory = format::read_memory(file);
   }
@@ -406,7 +407,8 @@ void learn(const LearnArguments& options) {
       write_results(folder.path(), result, model,
                     result.interrupted ? std::vector<format::LearnedLog>{} : learned, log, next);
   if (!options.memory.empty()) {
-    write_memory(options.memory, format::PastModelsFile::of(model, plan.data), plan.settings);
+    write_memory(options.memory, format::PastModelsFile::of(model, plan.data, plan.settings),
+                 plan.settings);
   }
   if (!model.ready() && !result.interrupted) {
     refuse_without_model(plan);

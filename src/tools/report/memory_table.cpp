@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "chart/text_table.hpp"
 #include "chart/wording.hpp"
@@ -37,6 +38,23 @@ std::vector<std::string> range_row(const format::PastModelsFile& memory, const s
           fmt::format("{:.4g}", sum / count), fmt::format("{:.4g}", high)};
 }
 
+// Mean and root mean square of each term.
+std::vector<std::vector<std::string>> term_rows(const format::PastModelsFile& memory,
+                                                const StoredPastModel& model) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t row = 4 + memory.terms.size();
+  const double weight = model.sums[row];
+  for (std::size_t k = 0; k < memory.terms.size(); row += ++k) {
+    rows.push_back({memory.terms[k], fmt::format("{:.4g}", model.sums[row] / weight),
+                    fmt::format("{:.4g}", std::sqrt(model.sums[row + k] / weight))});
+  }
+  return rows;
+}
+
+std::size_t samples_of(const StoredPastModel& model) {
+  return model.sums.empty() ? model.targets.size() : static_cast<std::size_t>(model.sums[1]);
+}
+
 }  // namespace
 
 std::string memory_table(const format::PastModelsFile& memory) {
@@ -51,7 +69,7 @@ std::string memory_table(const format::PastModelsFile& memory) {
                             chart::time_text(info.until_s), chart::grouped(info.samples),
                             chart::grouped(info.recalls),
                             with_unit(info.usual_error, unit_of(memory, axis.target)),
-                            chart::grouped(model.targets.size())});
+                            chart::grouped(samples_of(model))});
     }
   }
   return chart::table_text(table);
@@ -61,10 +79,16 @@ std::string past_model_table(const format::PastModelsFile& memory, std::string_v
                              const StoredPastModel& model) {
   const std::string target(name.substr(0, name.rfind(':')));
   chart::TextTable table{
-      .title = fmt::format("{}: {} samples", name, chart::grouped(model.targets.size())),
+      .title = fmt::format("{}: {} samples", name, chart::grouped(samples_of(model))),
       .head = {"column", "unit", "lowest", "mean", "highest"},
-      .rows = {range_row(memory, target, model.targets, 0, 1)}};
-  for (std::size_t i = 0; i < memory.inputs.size(); ++i) {
+      .rows = {}};
+  if (model.sums.empty()) {
+    table.rows = {range_row(memory, target, model.targets, 0, 1)};
+  } else {
+    table.head = {"term", "mean", "root mean square"};
+    table.rows = term_rows(memory, model);
+  }
+  for (std::size_t i = 0; model.sums.empty() && i < memory.inputs.size(); ++i) {
     table.rows.push_back(
         range_row(memory, memory.inputs[i], model.inputs, i, memory.inputs.size()));
   }

@@ -260,12 +260,12 @@ TEST(Posterior, TellsItsSamplesAnew) {
     for (std::size_t i = 0; i < 20; ++i) {
       EXPECT_NEAR(value(told, data[i].phi), value(direct, data[i].phi), within);
     }
-    EXPECT_NEAR(told.targets().mean, direct.targets().mean, 0.02);
-    EXPECT_NEAR(told.targets().scale, direct.targets().scale, 0.02);
+    EXPECT_NEAR(told.sums().targets().mean, direct.sums().targets().mean, 0.02);
+    EXPECT_NEAR(told.sums().targets().scale, direct.sums().targets().scale, 0.02);
   };
   Budget one_step(1);
   EXPECT_FALSE(told.solve(kGroups, one_step));
-  told.tell_anew(step, kAll);
+  told.tell_anew(step, step, kAll);
   expect_same(0.05);
   solve(told);
   expect_same(0.05);
@@ -280,7 +280,7 @@ TEST(Posterior, LaterSamplesCountMoreAfterEarlierFade) {
     Posterior posterior = learned(rows(11, 2000, 0.3));
     Budget one_step(1);
     EXPECT_FALSE(posterior.solve(kGroups, one_step));  // a solve is at hand
-    posterior.tell_anew({}, kept);
+    posterior.tell_anew({}, {}, kept);
     for (Row& row : rows(12, 200, 0.3)) {
       row.y += 0.3;
       learn(posterior, row);
@@ -299,7 +299,8 @@ TEST(Posterior, GoesOnFromASavedState) {
       [&](Posterior& posterior, std::size_t i) {
         posterior.add(data[i].phi, data[i].y, 1.0, Likelihood::student);
         if (i % 40 == 39) {
-          posterior.tell_anew(std::array{0.0, 0.1, 0.0, 0.0}, 50.0);
+          const std::array step{0.0, 0.1, 0.0, 0.0};
+          posterior.tell_anew(step, step, 50.0);
         }
         Budget one_step(1);  // a solve is at hand at most stops
         if (posterior.wants_solve()) {

@@ -69,17 +69,22 @@ class From : public testing::CommandTest {
 };
 
 TEST_F(From, BothFilesGoOnUnderAnotherLog) {
-  const std::string set = " --set buffer=100 --split tail --validate-every 30";
-  expect_learned("monday.csv --out monday --checkpoint-every 300" + set);
-  expect_learned("tuesday.csv --out alone" + set);
-  for (const std::string file : {"model.json", "checkpoint.kelpie"}) {
-    expect_learned("tuesday.csv --out next --split tail --validate-every 30 --from monday/" + file);
-    EXPECT_EQ(result("next")["from"], "monday/" + file);
-    EXPECT_EQ(result("next")["settings"]["buffer"], 100);
-    EXPECT_GT(early_r2("next"), early_r2("alone") + 0.002) << file;
-    EXPECT_TRUE(exists("next/model.json"));
+  for (const std::string learner : {"committee", "posterior"}) {
+    const std::string set =
+        " --set buffer=100 --set learner=" + learner + " --split tail --validate-every 30";
+    expect_learned("monday.csv --out monday --checkpoint-every 300" + set);
+    expect_learned("tuesday.csv --out alone" + set);
+    for (const std::string file : {"model.json", "checkpoint.kelpie"}) {
+      expect_learned("tuesday.csv --out next --split tail --validate-every 30 --from monday/" +
+                     file);
+      EXPECT_EQ(result("next")["from"], "monday/" + file);
+      EXPECT_EQ(result("next")["settings"]["buffer"], 100);
+      EXPECT_EQ(result("next")["settings"]["learner"], learner);
+      EXPECT_GT(early_r2("next"), early_r2("alone") + 0.002) << learner << ", " << file;
+      EXPECT_TRUE(exists("next/model.json"));
+    }
+    EXPECT_TRUE(result("alone")["from"].is_null());
   }
-  EXPECT_TRUE(result("alone")["from"].is_null());
 }
 
 TEST_F(From, AChainOfCheckpointsHoldsAllOfIt) {

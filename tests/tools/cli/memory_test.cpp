@@ -63,6 +63,22 @@ TEST_F(Memory, IsKeptFromRunToRunListedShownAndForgotten) {
   expect_refused("memory show m.json udot:1", "m.json: udot:1: isn't there");
 }
 
+// Sums in place of samples; a file of the one is none for the other.
+TEST_F(Memory, OfThePosteriorIsKeptAsSums) {
+  testing::succeeded(learn("--set learner=posterior"));
+  const nlohmann::json first = the_only_model();
+  EXPECT_EQ(parsed("m.json")["version"], 2);
+  EXPECT_NE(run("memory list m.json").out.find("udot:1"), std::string::npos);
+  EXPECT_NE(run("memory show m.json udot:1").out.find("root mean square"), std::string::npos);
+  expect_refused("learn log.csv --memory m.json",
+                 "m.json: models: are sums, as 'learner = posterior' keeps them");
+  testing::succeeded(learn("--set learner=posterior"));
+  EXPECT_EQ(the_only_model()["number"], 1);
+  EXPECT_NEAR(the_only_model()["samples"].get<int>(), 2 * first["samples"].get<int>(), 40);
+  expect_refused("learn log.csv --set learner=posterior --set terms=linear --memory m.json",
+                 "m.json: terms: are '1; ");
+}
+
 TEST_F(Memory, ADayLearnedFourTimesTakesOnePlace) {
   for (int day = 0; day < 4; ++day) {
     testing::succeeded(learn(""));

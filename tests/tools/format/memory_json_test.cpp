@@ -35,6 +35,25 @@ format::PastModelsFile memory() {
           .axes = {{"udot", {past(1), past(3)}}, {"rdot", {past(1)}}}};
 }
 
+// Of a constant and a term.
+format::PastModelsFile sums() {
+  StoredPastModel model = past(1);
+  model.inputs = model.targets = model.times_s = {};
+  model.rows_per_sample = 2.5;
+  model.sums = {0.5, 60.0, 58.0, 7.0, 1.0, 1.0 / 3.0, 58.0, -2.0, 40.0};
+  return {.inputs = {"u", "n"},
+          .units = {},
+          .terms = {"1", "u"},
+          .axes = {{"udot", {model}}, {"rdot", {model}}}};
+}
+
+ModelSettings posterior_settings() {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  settings.assign("learner", "posterior");
+  settings.assign("terms", "u");
+  return settings;
+}
+
 log::Dataset log() {
   log::Dataset data;
   data.input_names = {"u", "n"};
@@ -57,6 +76,27 @@ TEST(MemoryJson, ReadsBackToTheLastBit) {
   EXPECT_EQ(model.times_s, past(3).times_s);
 }
 
+TEST(MemoryJson, SumsReadBackToTheLastBit) {
+  const std::string text = format::memory_json(sums());
+  const format::PastModelsFile read = format::parse_memory_json(text, "m.json");
+  EXPECT_EQ(format::memory_json(read), text);
+  EXPECT_EQ(read.terms, sums().terms);
+  EXPECT_EQ(read.axes[0].models[0].sums, sums().axes[0].models[0].sums);
+  EXPECT_EQ(read.axes[0].models[0].rows_per_sample, 2.5);
+  auto bad = nlohmann::json::parse(text);
+  const auto refusal = [&] {
+    return message_of<InputError>([&] { format::parse_memory_json(bad.dump(), "m.json"); });
+  };
+  bad["axes"][0]["models"][0]["sums"][2] = 0;
+  EXPECT_EQ(refusal(), "m.json: axes[0].models[0].sums: are of no samples");
+  bad["terms"].push_back("n");
+  EXPECT_EQ(refusal(), "m.json: axes[0].models[0].sums: holds 9 numbers; 13 are needed");
+  const std::string table = report::past_model_table(read, "udot:1", read.axes[0].models[0]);
+  for (const char* const part : {"60 samples", "root mean square", "-0.03448", "0.8305"}) {
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+  }
+}
+
 TEST(MemoryJson, RefusesNumbersThatNobodyCanCalculateWith) {
   auto json = nlohmann::json::parse(format::memory_json(memory()));
   json["axes"][0]["models"][1]["rows"][1][2] = -1.7e308;
@@ -73,6 +113,8 @@ TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {
   EXPECT_EQ(refusal(good), "");
   auto bad = good;
   bad["version"] = 2;
+  EXPECT_EQ(refusal(bad), "m.json: file: has no 'terms'");
+  bad["version"] = 3;
   EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 1");
   bad = good;
   bad["axes"][0]["models"][1]["rows"][0].push_back(1);
@@ -112,6 +154,17 @@ TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
     return message;
   };
   EXPECT_EQ(refusal(memory(), log(), settings), "");
+  EXPECT_EQ(refusal(sums(), log(), posterior_settings()), "");
+  EXPECT_EQ(refusal(memory(), log(), posterior_settings()),
+            "m.json: models: are samples, as 'learner = committee' keeps them, and the run needs "
+            "sums, as 'learner = posterior' keeps them: give another file, or --set "
+            "learner=committee");
+  EXPECT_NE(refusal(sums(), log(), settings).find("give another file, or --set learner=posterior"),
+            std::string::npos);
+  ModelSettings others = posterior_settings();
+  others.assign("terms", "n");
+  EXPECT_EQ(refusal(sums(), log(), others),
+            "m.json: terms: are '1; u' there, '1; n' in the run: give the same terms");
   log::Dataset other = log();
   other.input_names = {"n", "u"};
   EXPECT_EQ(refusal(memory(), other, settings),
