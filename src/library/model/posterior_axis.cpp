@@ -272,26 +272,62 @@ PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta,
   return in_scale(weights, scaling_.target.apply(centre + theta[0] + known(0)));
 }
 
-// The posterior's mean as a function of scaled kernels and terms.
 void PosteriorAxis::serve() {
+  mean_ = posterior_.centre() +
+          (posterior_.sums().targets(prior_).mean - posterior_.sums().targets().mean);
+  certain_ = certain_range();
+  assign_members();
+}
+
+// The posterior's mean as a function of scaled kernels and terms.
+void PosteriorAxis::assign_members() {
   const std::span<const double> theta = posterior_.weights();
   const std::size_t first = features_.terms_end();
   scratch_.assign(features_.basis().size(), 0.0);  // centres that came since have no weight yet
   std::ranges::transform(theta.subspan(first), scratch_.begin(),
                          [&](double weight) { return weight / scaling_.target.scale; });
   features_.basis().to_kernel(scratch_);
-  TermWeights errors(first);
-  for (std::size_t k = 0; k < first; ++k) {
-    errors[k] = posterior_.error(k);
-  }
-  errors = in_scale(errors, 0.0);
-  mixture_.assign_posterior(features_.basis().centres(), scratch_,
-                            as_span(scaled(theta.first(first), posterior_.centre())),
-                            as_span(errors).first(terms().size()));
+  mixture_.assign_posterior(
+      features_.basis().centres(), scratch_,
+      as_span(scaled(theta.first(first), posterior_.centre())),
+      {scaling_.target.apply(certain_.low), scaling_.target.apply(certain_.high)});
   mixture_.assign_terms(as_span(scaled(posterior_.first_weights(), posterior_.centre())));
-  const double of_known = posterior_.sums().targets(prior_).mean - posterior_.sums().targets().mean;
-  const double mean = scaling_.target.apply(posterior_.centre() + of_known);
+  const double mean = scaling_.target.apply(mean_);
   mixture_.assign_mean({&mean, 1});
+}
+
+// All that the inputs do, each alone beside the means of the others, at the ends of its range, as
+// far as certain to three standard errors of the terms.
+ValueRange PosteriorAxis::certain_range() {
+  if (!prior_.empty()) {
+    return {};  // of a vehicle known beforehand everything is certain
+  }
+  std::vector<double>& x = place_;
+  x = features_.units().mean;
+  std::array<double, kMostTerms + 1> room{}, moved{};
+  const std::span<double> middle = std::span(room).first(features_.terms_end());
+  const std::span<double> step = std::span(moved).first(middle.size());
+  features_.first(x, middle);
+  const double said = value(posterior_, features_.evaluate(x));
+  const auto effect = [&](std::size_t input, double at) {
+    const double mean = std::exchange(x[input], at);
+    features_.first(x, step);
+    std::ranges::transform(step, middle, step.begin(), std::minus<>{});
+    const double sum = value(posterior_, features_.evaluate(x)) - said;
+    x[input] = mean;
+    const double unknown = kPosterior.certain * posterior_.look(step, 0.0).error;
+    return std::copysign(std::max(0.0, std::abs(sum) - unknown), sum);
+  };
+  ValueRange range{said, said};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto [low, high] = features_.ranges()[i];
+    if (low <= high) {
+      const auto [least, most] = std::minmax({0.0, effect(i, low), effect(i, high)});
+      range.low += least;
+      range.high += most;
+    }
+  }
+  return range;
 }
 
 // Novelty compares places with all centres.
@@ -473,8 +509,11 @@ void PosteriorAxis::visit(Archive& archive) {
   if (has_scale_) {
     scaling_.visit(archive, features_.units().dimension(), terms().size());
     archive.part("mixture", mixture_);
+    for (double* const one : {&mean_, &certain_.low, &certain_.high}) {
+      archive.number(*one);
+    }
     if (archive.loading()) {
-      serve();
+      assign_members();
     }
   }
 }

@@ -97,6 +97,8 @@ class PosteriorAxis final : public ModelAxis {
   TermWeights scaled(std::span<const double> theta, double centre) const;
   void tell_anew(std::span<const double> step, const TermWeights& first, double kept);
   void serve();
+  void assign_members();
+  ValueRange certain_range();
   std::size_t block_length() const;
   void know_centres();
 
@@ -107,6 +109,8 @@ class PosteriorAxis final : public ModelAxis {
   std::vector<double> prior_;  ///< the prior's mean of the first features; empty: 0
   AxisScaling scaling_;        ///< of the mixture
   bool has_scale_ = false;     ///< after the first solve
+  double mean_ = 0.0;          ///< of the targets at the last solve
+  ValueRange certain_;         ///< of values that the terms were certain of then
   Mixture mixture_;            ///< in service
   KnownPlaces known_;          ///< the centres, for novelty
   Uncertainty uncertainty_;
@@ -116,6 +120,7 @@ class PosteriorAxis final : public ModelAxis {
   Tally tally_;
   Budget budget_;
   RoomyVector<double> scratch_;  ///< a number per feature
+  std::vector<double> place_;    ///< scratch
 };
 
 }  // namespace kelpie

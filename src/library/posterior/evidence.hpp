@@ -15,6 +15,9 @@ namespace kelpie {
 /// and at most what is enough.
 class Evidence {
  public:
+  /// `enough`: of evidence [nat].
+  explicit Evidence(double enough = kPosterior.nats) : enough_(enough) {}
+
   /// A row's gain: the errors of the live posterior and of the alternative, beside the least
   /// variance σ² of the noise of both.
   static double gain(double error, double own, double noise) {
@@ -25,7 +28,7 @@ class Evidence {
 
   /// Adds a row's gain, where so many rows make an independent sample.
   void add(double gain, double rows_per_sample) {
-    nats_ = std::min(nats_ + gain / rows_per_sample, kPosterior.nats);
+    nats_ = std::min(nats_ + gain / rows_per_sample, enough_);
     sum_ += gain;
     rows_ += 1.0;
     if (nats_ <= 0.0) {
@@ -37,7 +40,7 @@ class Evidence {
 
   /// Whether `share` of the evidence and of the gain per row that are enough are there.
   bool is_clear(double share = 1.0) const {
-    return nats_ >= share * kPosterior.nats && sum_ > share * kPosterior.nats_per_row * rows_;
+    return nats_ >= share * enough_ && sum_ > share * kPosterior.nats_per_row * rows_;
   }
   bool leads() const { return nats_ > kPosterior.nats_per_row; }  ///< Evidence is left.
   double rows() const { return rows_; }                           ///< Since the sum was 0 last.
@@ -49,6 +52,7 @@ class Evidence {
   }
 
  private:
+  double enough_;
   double nats_ = 0.0, sum_ = 0.0, rows_ = 0.0;
 };
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "posterior/posterior.hpp"
@@ -14,6 +16,8 @@ namespace kelpie {
 namespace {
 
 constexpr double kTiny = 1e-12;  // of the mean: rounding
+constexpr ValueRange kNowhere{std::numeric_limits<double>::infinity(),
+                              -std::numeric_limits<double>::infinity()};
 
 // Degrees in velocities and in commands, and the number of inputs: terms alike share a width.
 std::array<double, 3> degrees(const TermSet& terms, std::size_t k, std::size_t inputs,
@@ -37,7 +41,8 @@ Features::Features(std::size_t inputs, TermSet terms, std::span<const std::size_
       basis_(kPosterior.gamma * std::sqrt(6.0 / static_cast<double>(inputs)), inputs, centres),
       units_{std::vector<double>(inputs), Matrix(inputs, inputs)},
       mean_(inputs),
-      scatter_(inputs) {
+      scatter_(inputs),
+      ranges_(inputs, kNowhere) {
   std::map<std::array<double, 3>, std::uint8_t> known;
   groups_.push_back(FeatureGroup::kFlat);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
@@ -48,11 +53,16 @@ Features::Features(std::size_t inputs, TermSet terms, std::span<const std::size_
   groups_.resize(capacity(), FeatureGroup::kKernel);
   last_.resize(inputs);
   phi_.resize(capacity());
+  watched_ = states_;
+  if (states_.empty()) {  // any input may be a velocity
+    watched_.resize(inputs);
+    std::iota(watched_.begin(), watched_.end(), std::size_t{0});
+  }
 }
 
 double Features::trust(std::span<const double> x) const {
   double most = 1.0;
-  for (const std::size_t i : states_) {
+  for (const std::size_t i : watched_) {
     most = std::max(most, std::abs(x[i] - units_.mean[i]) * units_.whitening(i, i));
   }
   return most <= kPosterior.far ? 1.0 : std::pow(kPosterior.far / most, 4);
@@ -64,6 +74,9 @@ std::optional<Matrix> Features::observe(std::span<const double> x, double trust)
   bool is_outgrown = !has_units() && rows_ >= kPosterior.first_rows;
   std::vector<double>& mean = mean_;
   for (std::size_t i = 0; i < x.size(); ++i) {
+    if (trust == 1.0) {
+      ranges_[i] = {std::min(ranges_[i].low, x[i]), std::max(ranges_[i].high, x[i])};
+    }
     const double before = x[i] - mean[i];
     mean[i] += trust / weight_ * before;
     scatter_[i] += trust * before * (x[i] - mean[i]);
@@ -139,6 +152,10 @@ void Features::visit(Archive& archive) {
   archive.numbers(scatter_);
   archive.numbers(units_.mean);
   archive.numbers(units_.whitening.values());
+  for (ValueRange& range : ranges_) {
+    archive.any_number(range.low);
+    archive.any_number(range.high);
+  }
   archive.part("kernel", basis_);
   is_current_ = is_current_ && !archive.loading();
 }

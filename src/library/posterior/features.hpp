@@ -11,6 +11,7 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "posterior/kernel_basis.hpp"
+#include "svr/function_mix.hpp"
 
 namespace kelpie {
 
@@ -37,7 +38,8 @@ class Features {
   /// The group of each feature, up to capacity(): terms of the same degrees, the kernel.
   std::span<const std::uint8_t> groups() const { return groups_; }
 
-  /// Weight of a sample by its velocities: 1 up to 10 deviations z, then (10/z)⁴.
+  /// Weight of a sample by its velocities, or by all inputs where the velocities are unknown: 1 up
+  /// to 10 deviations z, then (10/z)⁴.
   double trust(std::span<const double> x) const;
 
   /// Takes note of a sample; T where the kernel has new units from now on.
@@ -51,6 +53,9 @@ class Features {
   /// φ(x). Where x is novel and a place is free, x becomes a centre first.
   std::span<const double> learn(std::span<const double> x);
 
+  /// Of each input, in the samples of full trust; empty ranges before the first.
+  std::span<const ValueRange> ranges() const { return ranges_; }
+
   void clear();  ///< Forgets all samples. Allocates.
 
   /// The units, as the input scaling of a model: z = (x − mean)/deviation.
@@ -62,6 +67,7 @@ class Features {
  private:
   TermSet terms_;
   std::vector<std::size_t> states_;
+  std::vector<std::size_t> watched_;  ///< inputs of trust(): the velocities, else all
   KernelBasis basis_;
   std::vector<std::uint8_t> groups_;
   std::vector<double> phi_;   ///< of the last sample
@@ -71,6 +77,7 @@ class Features {
   InputScaling units_;
   double rows_ = 0.0, weight_ = 0.0, weight_at_units_ = 0.0;
   std::vector<double> mean_, scatter_;
+  std::vector<ValueRange> ranges_;
 };
 
 }  // namespace kelpie

@@ -35,8 +35,7 @@ Mixture::Mixture(const SvrFunction& posterior, const OnlineSvrSettings& settings
       mix_(members_of(posterior, paper_.learner().model())),
       shares_(kPosterior.first_shares),
       seen_(kOnline.range.margin),
-      seen_terms_(posterior.kernel().terms()),
-      certain_(posterior.kernel().terms() + 1) {
+      seen_terms_(posterior.kernel().terms()) {
   mix_.limits.caution = kOnline.members.caution;
   for (const FunctionMix::Member& member : mix_.members) {
     frozen_.push_back(member.function);
@@ -83,17 +82,9 @@ void Mixture::see(std::span<const double> z, double y) {
 
 void Mixture::limit() {
   mix_.term_ranges = seen_terms_.ranges();
-  ValueRange known{certain_.back(), certain_.back()};
-  for (std::size_t k = 0; k + 1 < certain_.size(); ++k) {
-    if (certain_[k] != 0.0) {
-      const auto [low, high] = mix_.term_range(k);
-      known.low += std::min(certain_[k] * low, certain_[k] * high);
-      known.high += std::max(certain_[k] * low, certain_[k] * high);
-    }
-  }
   const auto [low, high] = seen_.range();
-  mix_.limits.low = std::min(low, known.low);
-  mix_.limits.high = std::max(high, known.high);
+  mix_.limits.low = std::min(low, certain_.low);
+  mix_.limits.high = std::max(high, certain_.high);
 }
 
 void Mixture::serve() {
@@ -115,15 +106,10 @@ void Mixture::freeze() {
 }
 
 void Mixture::assign_posterior(const SampleStore& centres, std::span<const double> beta,
-                               std::span<const double> weights, std::span<const double> errors) {
+                               std::span<const double> weights, const ValueRange& certain) {
   mix_.members[kOfPosterior].function.assign(centres, beta, weights.first(weights.size() - 1),
                                              weights.back());
-  std::ranges::transform(weights.first(errors.size()), errors, certain_.begin(),
-                         [](double weight, double error) {
-                           const double least = std::abs(weight) - kPosterior.certain * error;
-                           return std::copysign(std::max(0.0, least), weight);
-                         });
-  certain_.back() = weights.back();
+  certain_ = certain;
   limit();
 }
 
@@ -172,7 +158,7 @@ void Mixture::clear() {
   shares_ = MemberShares(kPosterior.first_shares);
   seen_.clear();
   seen_terms_ = SeenTermRanges(mix_.members[kOfPosterior].function.kernel().terms());
-  std::ranges::fill(certain_, 0.0);
+  certain_ = {0.0, 0.0};
   limit();
   serve();
 }

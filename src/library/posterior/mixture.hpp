@@ -27,10 +27,8 @@ namespace kelpie {
 ///
 /// Limits as of a Committee: terms stay within twice their ranges, disagreement of the members
 /// shrinks the value towards the mean, and each member stays within the targets seen (SeenRange).
-/// Where weights w_k of terms are certain to e_k, the targets' range is widened to all that these
-/// terms can add up to, so that effects may meet which never met before:
-///
-///     bias + Σ_k c_k φ_k,  c_k = sign(w_k) max(0, |w_k| − 2 e_k),  φ_k within its range
+/// The targets' range is widened to what the terms are certain of, so that effects may meet which
+/// never met before.
 ///
 /// Allocates in the constructor, and in move().
 class Mixture {
@@ -48,10 +46,10 @@ class Mixture {
   /// learn a sample.
   void update(std::span<const double> z, double y, double t, std::size_t block);
 
-  /// Functions of a solve. `weights`: of the terms, the last number the bias; `errors`: standard
-  /// errors of the terms' weights, infinite where unknown.
+  /// Functions of a solve. `weights`: of the terms, the last number the bias; `certain`: the range
+  /// of values that the terms are certain of.
   void assign_posterior(const SampleStore& centres, std::span<const double> beta,
-                        std::span<const double> weights, std::span<const double> errors);
+                        std::span<const double> weights, const ValueRange& certain);
   void assign_terms(std::span<const double> weights) { assign_linear(kOfTerms, weights); }
   void assign_mean(std::span<const double> weights) { assign_linear(kOfMean, weights); }
 
@@ -94,7 +92,7 @@ class Mixture {
   MemberShares shares_;
   SeenRange seen_;  ///< targets
   SeenTermRanges seen_terms_;
-  std::vector<double> certain_;      ///< c_k, the last number the bias
+  ValueRange certain_{0.0, 0.0};     ///< of values of terms
   std::vector<SvrFunction> frozen_;  ///< the members at the begin of a block of losses
 };
 

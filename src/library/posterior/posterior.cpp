@@ -56,7 +56,7 @@ void Posterior::clear() {
   weights_.clear();
   errors_.clear();
   widths_at_ = centre_ = served_at_ = 0.0;
-  informed_ = noise_ = spread_ = 1.0;
+  informed_ = noise_ = usual_ = spread_ = 1.0;
   correlation_ = ErrorCorrelation();
   for (std::size_t g = 0; g < FeatureGroup::kMost; ++g) {
     precision_[g] = first_precision(g);
@@ -65,12 +65,20 @@ void Posterior::clear() {
   round_ = 0;
 }
 
-double Posterior::surprise(std::span<const double> phi, double y) {
+Posterior::Looks Posterior::look(std::span<const double> phi, double y, double share) {
   if (!ready()) {
-    return 0.0;
+    return {};
   }
   const double error = (y - value(*this, phi)) / spread_;
-  return error * error / (noise_ + variance_of_first(phi));
+  const double unknown = variance_of_first(phi);
+  const double squares = error * error / (noise_ + unknown);
+  usual_ += share * (std::min(squares, kPosterior.usual * usual_) - usual_);
+  usual_ = std::max(usual_, kPosterior.least_usual);
+  return {.surprise = squares / std::max(1.0, usual_),
+          .unknown = unknown,
+          .noise = noise_,
+          .deviations = (y - centre_) / spread_,
+          .error = spread_ * std::sqrt(unknown * first_noise_ / noise_)};
 }
 
 void Posterior::add(std::span<const double> phi, double y, double trust, Likelihood likelihood) {
@@ -81,7 +89,7 @@ void Posterior::add(std::span<const double> phi, double y, double trust, Likelih
   if (ready()) {
     const double error = (y - value(*this, phi)) / (spread_ * std::sqrt(noise_));
     correlation_.add(std::clamp(error, -kPosterior.most_deviations, kPosterior.most_deviations));
-    weight *= weight_of(surprise(phi, y), likelihood);
+    weight *= weight_of(look(phi, y).surprise, likelihood);
   }
   seen_.add(phi, y, weight);
 }
@@ -176,8 +184,8 @@ void Posterior::begin_solve(std::span<const std::uint8_t> group) {
   const TargetScaling targets = seen_.targets();
   const double mean = targets.mean - seen_.origin;
   begun_ = {.rows = seen_.rows,
-            .rows_per_sample =
-                std::clamp(correlation_.rows_per_sample(), 1.0, std::max(1.0, seen_.rows / 20.0)),
+            .rows_per_sample = std::clamp(correlation_.rows_per_sample(), 1.0,
+                                          std::max(1.0, seen_.rows / kPosterior.least_samples)),
             .centre = targets.mean,
             .spread = targets.scale,
             .square = seen_.weight};
@@ -224,7 +232,7 @@ std::size_t Posterior::step(std::span<const std::uint8_t> group) {
       task_ = Task::none;
     }
     if (task_ == Task::none) {
-      update_noise();
+      noise_ = noise_beside({theta_.data(), theta_.size()}, informed_);
       if (begun_.rows < kPosterior.young_rows && ++round_ < kPosterior.young_rounds) {
         begin_solve(group);
       } else {
@@ -286,14 +294,15 @@ void Posterior::update_widths(std::span<const std::uint8_t> group) {
 }
 
 // Errors that fall as weights fit the noise leave fewer samples for its estimate.
-void Posterior::update_noise() {
-  sums_.multiply({theta_.data(), theta_.size()}, {scratch_.data(), scratch_.size()});
-  const std::span<const double> theta{theta_.data(), theta_.size()};
-  const double left = begun_.square - 2.0 * dot(theta, {right_.data(), right_.size()}) +
-                      dot(theta, {scratch_.data(), scratch_.size()});
+double Posterior::noise_beside(std::span<const double> theta, double informed) {
+  const std::size_t m = theta.size();
+  const std::span<double> product{scratch_.data(), m};
+  sums_.multiply(theta, product);
+  const double left = begun_.square - 2.0 * dot(theta, {right_.data(), m}) +
+                      dot(theta, std::span<const double>(product));
   const double samples = this->samples();
-  const double free = std::max(samples - informed_, kPosterior.least_freedom * samples);
-  noise_ = std::clamp(
+  const double free = std::max(samples - informed, kPosterior.least_freedom * samples);
+  return std::clamp(
       (std::max(left, 0.0) / begun_.rows_per_sample + kPosterior.noise_prior) / (free + 1.0),
       kPosterior.least_noise, kPosterior.most_noise);
 }
@@ -311,6 +320,7 @@ void Posterior::serve() {
     }
   }
   find_weights(first_);
+  first_noise_ = noise_beside(first_, static_cast<double>(first_.size()));
   for (std::size_t i = 0; i < first_.size(); ++i) {
     std::ranges::copy(factor_.row(i), first_factor_.row(i).begin());
     first_scale_[i] = scale_[i];
@@ -403,8 +413,8 @@ void Posterior::visit(Archive& archive) {
   };
   archive.part("sums", seen_);
   for (double* const one :
-       {&informed_, &noise_, &widths_at_, &centre_, &spread_, &served_at_, &begun_.rows,
-        &begun_.rows_per_sample, &begun_.centre, &begun_.spread, &begun_.square}) {
+       {&informed_, &noise_, &first_noise_, &usual_, &widths_at_, &centre_, &spread_, &served_at_,
+        &begun_.rows, &begun_.rows_per_sample, &begun_.centre, &begun_.spread, &begun_.square}) {
     archive.number(*one);
   }
   archive.part("correlation", correlation_);

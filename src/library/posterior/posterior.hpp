@@ -14,6 +14,7 @@
 #include "learner/error_correlation.hpp"
 #include "posterior/sample_sums.hpp"
 #include "posterior/triangle.hpp"
+#include "posterior/tuning.hpp"
 
 namespace kelpie {
 
@@ -67,8 +68,17 @@ class Posterior {
   /// O(n²) for n first features.
   void add(const SampleSums& others, double share);
 
-  /// e²/d² of a sample before learning; 0 without a model. Cost O(m).
-  double surprise(std::span<const double> phi, double y);
+  /// How a sample looks before learning; zeros without a model.
+  struct Looks {
+    double surprise = 0.0;    ///< e²/d², per the usual value where that is beyond 1
+    double unknown = 0.0;     ///< s², in variances of the target
+    double noise = 0.0;       ///< σ², likewise
+    double deviations = 0.0;  ///< of the target from the mean
+    double error = 0.0;       ///< standard error of Σ θ_i φ_i of the first features alone
+  };
+  /// `share`: of the sample in the usual e²/d², which is far from 1 where the terms do not hold.
+  /// Cost O(m + n²) for n first features.
+  Looks look(std::span<const double> phi, double y, double share = 0.0);
 
   bool wants_solve() const;  ///< A solve has not ended, or enough samples came since the last.
 
@@ -124,7 +134,7 @@ class Posterior {
   void find_weights(std::span<double> theta) const;
   void find_variance(std::size_t k);
   void update_widths(std::span<const std::uint8_t> group);
-  void update_noise();
+  double noise_beside(std::span<const double> theta, double informed);
   void serve();
 
   SampleSums seen_;
@@ -134,6 +144,7 @@ class Posterior {
   std::vector<double> precision_;  ///< α_g
   double informed_ = 1.0;          ///< γ: the constant, and Σ γ_g
   double noise_ = 1.0;             ///< σ²
+  double usual_ = 1.0;             ///< e²/d² of samples before learning
   double widths_at_ = 0.0;         ///< rows at the last step of the evidence
 
   /// A solve at hand, of the sums at its begin; features and target have the unit 1.
@@ -158,6 +169,7 @@ class Posterior {
   // In service.
   RoomyVector<double> weights_, errors_;
   std::vector<double> first_;           ///< of the first features alone
+  double first_noise_ = 1.0;            ///< σ² beside these, in deviations of the target
   Triangle first_factor_;               ///< of their M
   std::vector<double> first_scale_;     ///< their D
   double centre_ = 0.0, spread_ = 1.0;  ///< of the targets

@@ -9,7 +9,8 @@
 
 namespace kelpie {
 
-Restart::Restart(std::size_t terms) : terms_(terms), young_(terms, terms) {
+Restart::Restart(std::size_t terms, double enough)
+    : terms_(terms), young_(terms, terms), evidence_(enough) {
   scored_weights_.reserve(terms);
   next_weights_.reserve(terms);
 }
@@ -19,7 +20,7 @@ void Restart::begin(std::size_t row, double t, double until_s) {
   row_ = row;
   begin_s_ = t;
   until_s_ = until_s;
-  scored_ = 0.0;
+  scored_ = explained_ = 0.0;
   scored_weights_.clear();
   next_weights_.clear();
   kept_s_ = t;
@@ -34,6 +35,7 @@ void Restart::update(std::span<const double> phi, double y, double t, double tru
     const double own = y - dot({scored_weights_.data(), terms_}, terms);
     const double gain = Evidence::gain(error, own, std::min(live.noise(), young_.noise()));
     scored_ += 1.0;
+    explained_ += Evidence::gain(y - young_.centre(), own, young_.noise());
     const double own_tau =
         std::min(young_.rows_per_sample(), kPosterior.most_correlated * scored_ + 1.0);
     evidence_.add(gain, std::max(alike, own_tau));
@@ -66,7 +68,7 @@ void Restart::visit(Archive& archive) {
     archive.list(*weights, terms_, [&](double& one) { archive.number(one); });
   }
   archive.whole(row_);
-  for (double* const one : {&kept_s_, &begin_s_, &until_s_, &scored_}) {
+  for (double* const one : {&kept_s_, &begin_s_, &until_s_, &scored_, &explained_}) {
     archive.number(*one);
   }
   archive.part("evidence", evidence_);

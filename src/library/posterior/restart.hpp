@@ -18,7 +18,8 @@ namespace kelpie {
 /// for neighbouring rows resemble each other. Allocates in the constructor only.
 class Restart {
  public:
-  explicit Restart(std::size_t terms);
+  /// `enough`: evidence of a restart that wins [nat].
+  Restart(std::size_t terms, double enough);
 
   /// Begins with the row of this number, at the time t; not an alternative any more at `until_s`.
   void begin(std::size_t row, double t, double until_s);
@@ -41,6 +42,8 @@ class Restart {
   bool wins(double t, double learned_s) const;
 
   bool leads() const { return evidence_.leads(); }  ///< Evidence is left.
+  /// Whether errors are smaller than those of the mean of the targets, as garbage's are not.
+  bool explains() const { return explained_ > kPosterior.explained * scored_; }
 
   void forget_evidence() { evidence_.clear(); }
 
@@ -60,6 +63,7 @@ class Restart {
   std::size_t row_ = 0;
   double begin_s_ = 0.0, until_s_ = 0.0;  ///< [s]
   double scored_ = 0.0;                   ///< rows
+  double explained_ = 0.0;                ///< by terms, beside the mean [nat]
   Evidence evidence_;
 };
 

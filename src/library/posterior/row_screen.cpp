@@ -17,7 +17,8 @@ auto runs_at(double t) {
 
 RowScreen::RowScreen(std::size_t inputs, std::size_t terms)
     : rows_(inputs, kRows),
-      restarts_{Restart(terms), Restart(terms), Restart(terms), Restart(terms)},
+      restarts_{Restart(terms, kPosterior.nats_at_start), Restart(terms, kPosterior.nats_at_start),
+                Restart(terms, kPosterior.nats_at_start), Restart(terms, kPosterior.nats)},
       before_(terms, terms),
       after_(terms, terms),
       phi_(terms) {}
@@ -33,7 +34,18 @@ void RowScreen::add(const RecentRows::Row& row, const Features& features,
   if (!waiting() && next_ == rows_.end() && std::ranges::none_of(restarts_, runs_at(row.t))) {
     rows_.clear();
   }
-  last_waits_ = live.surprise(phi, row.left) > kPosterior.surprise;
+  const double share = std::min(1.0, step / std::max(learned_s_, kPosterior.first_restart_s));
+  const Posterior::Looks looks = live.look(phi, row.left, share);
+  if (looks.unknown > kPosterior.set_off && looks.noise > kPosterior.unexplained) {
+    begin_anew(row.t);
+    last_waits_ = false;
+  } else {
+    const bool has_weight =
+        features.trust(row.x) == 1.0 || std::abs(looks.deviations) > kPosterior.far;
+    last_waits_ =
+        looks.surprise > kPosterior.surprise || (looks.unknown > kPosterior.most_unknown &&
+                                                 has_weight && learned_s_ > kPosterior.garbage_s);
+  }
   learned_s_ += last_waits_ ? 0.0 : step;
   begin_restarts(row.t);
   if (last_waits_) {
@@ -44,12 +56,31 @@ void RowScreen::add(const RecentRows::Row& row, const Features& features,
   rows_.push(row, last_waits_ ? State::waits : State::due);
   waits_since_ = !waits ? rows_.end() : std::min(waits_since_, rows_.end() - 1);
   run_restarts(row, features, phi, live);
+  end_waiting(row.t, features, live);
+}
+
+// Rows that wait are learned, or judged.
+void RowScreen::end_waiting(double t, const Features& features, const Posterior& live) {
   const bool is_crowded = rows_.full() && waits_since_ == rows_.begin();
-  if (waiting() && (row.t - waits_s_ > kPosterior.garbage_s || is_crowded)) {
+  // What no terms explain may be garbage for longer.
+  const double most_s =
+      kPosterior.garbage_s * (restarts_[kRestarts].explains() ? 1.0 : kPosterior.patience);
+  if (waiting() && (t - waits_s_ > most_s || is_crowded)) {
     release(State::due);
-  } else if (waiting() && row.t - waited_s_ > kPosterior.calm_s) {
+  } else if (waiting() && t - waited_s_ > kPosterior.calm_s) {
     judge(features, live);
   }
+}
+
+// With the row of the time t, as at the start.
+void RowScreen::begin_anew(double t) {
+  won_ = {.since_s = t, .is_change = false};
+  rows_.clear();
+  next_ = waits_since_ = rows_.end();
+  first_s_ = t;
+  learned_s_ = 0.0;
+  started_ = 0;
+  std::ranges::for_each(restarts_, [](Restart& one) { one.end(); });
 }
 
 // Before the row of the time t is kept.
@@ -81,7 +112,8 @@ void RowScreen::run_restarts(const RecentRows::Row& row, const Features& feature
   }
   const auto winner =
       std::ranges::find_if(restarts_.rbegin(), restarts_.rend(), [&](const auto& one) {
-        return one.runs(row.t) && one.first_row() >= rows_.begin() && one.wins(row.t, learned_s_);
+        return one.runs(row.t) && one.first_row() >= rows_.begin() && one.wins(row.t, learned_s_) &&
+               (&one != &last || one.explains());
       });
   if (winner == restarts_.rend()) {
     return;

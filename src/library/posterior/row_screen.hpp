@@ -18,7 +18,11 @@ namespace kelpie {
 /// Decides which rows a live posterior learns, and when: rows in which the vehicle moves as never
 /// before teach most, and garbage destroys most, and both surprise.
 ///
-/// - A row waits where its error has e² > 16 (σ² + s²). Other rows are due at once.
+/// - A row waits where its error has e² > 16 (σ² + s²), or where next to nothing is known of its
+///   inputs (s² beyond 20 variances of the targets), for such a row would rule by itself. Other
+///   rows are due at once.
+/// - Where the live posterior explains less than a fifth of the variance of the targets, as of a
+///   vehicle at rest, and nothing is known of a row (s² beyond 1,000), all begins anew with it.
 /// - Two seconds after the last row that waits, the rows that wait are judged together, by what the
 ///   terms' posterior would say at the inputs of all rows learned so far if it had learned them as
 ///   well, by Gauss's likelihood: the mean square of the difference, in variances of the noise
@@ -29,7 +33,8 @@ namespace kelpie {
 ///   row of all, for garbage at the start surprises nobody. Where a restart wins, the live
 ///   posterior has to be forgotten, and the rows since the restart's begin are due; but where rows
 ///   that waited do not contradict the vehicle known (a distance of 0.2), they are learned beside.
-/// - After 36 s, rows that wait are due, whatever they are: garbage ends.
+/// - After 36 s, rows that wait are due, whatever they are: garbage ends. Where the terms of the
+///   restart explain no more than the mean, after 144 s.
 ///
 /// Cost of a row O(n²) for n terms, of a judgement O(n³). Allocates in the constructor only.
 class RowScreen {
@@ -73,10 +78,12 @@ class RowScreen {
   static constexpr std::size_t kRestarts = 3;  ///< at the start, and one at rows that wait
 
   bool waiting() const { return waits_since_ < rows_.end(); }
+  void begin_anew(double t);
   void begin_restarts(double t);
   void run_restarts(const RecentRows::Row& row, const Features& features,
                     std::span<const double> phi, const Posterior& live);
   void take_over(const Restart& winner);
+  void end_waiting(double t, const Features& features, const Posterior& live);
   void judge(const Features& features, const Posterior& live);
   double distance(std::size_t first, bool all, const Features& features, const Posterior& live);
   void release(State state);

@@ -23,8 +23,8 @@ void Triangle::add_square(double weight, std::span<const double> x) {
 }
 
 void Triangle::multiply(std::span<const double> x, std::span<double> y) const {
-  std::ranges::fill(y.first(size_), 0.0);
-  for (std::size_t i = 0; i < size_; ++i) {
+  std::ranges::fill(y.first(x.size()), 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
     const std::span<const double> before = row(i).first(i);
     y[i] += dot(row(i), x.first(i + 1));
     add_scaled(x[i], before, y.first(i));

@@ -33,7 +33,7 @@ class Triangle {
   /// The symmetric matrix += weight · x xᵀ. Requires a number per row. Cost O(size²).
   void add_square(double weight, std::span<const double> x);
 
-  /// y = M x for the symmetric matrix. Requires numbers per row. Cost O(size²).
+  /// y = M x for the symmetric matrix, by the leading block of x.size() rows. Cost O(x.size()²).
   void multiply(std::span<const double> x, std::span<double> y) const;
 
   /// Row i of Cholesky's factor in the place of row i of a positive definite matrix, whose rows

@@ -33,23 +33,34 @@ inline constexpr struct PosteriorTuning {
   /// Shares of posterior, terms, svr and mean before the first losses; by hand.
   std::array<double, 4> first_shares{0.3, 0.4, 0.15, 0.15};
   std::array<double, 4> first_shares_of_known{0.45, 0.45, 0.05, 0.05};  ///< likewise
-  double certain = 2.0;          ///< standard errors of a weight that count as unknown; by hand
+  double certain =
+      3.0;  ///< standard errors of an effect that count as unknown; lab/random_vehicles.py
   double block = 2.0;            ///< independent samples of a block of losses; by hand
   int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand
   std::int64_t slice = 300'000;  ///< numbers of a solve in one update; by hand
   double outgrown = 1.5;         ///< growth of an input's deviation that moves the kernel; by hand
-  double far = 10.0;        ///< deviations of a velocity beyond which a row counts less; by hand
-  double garbage_s = 36.0;  ///< longest garbage of a sensor [s], as for the committee's guard
+  double least_samples =
+      80.0;            ///< independent, of all rows; from 20 to 300 on lab/random_vehicles.py
+  double usual = 4.0;  ///< times the usual surprise that a row counts, at most; by hand
+  double least_usual = 0.25;  ///< likewise, of the usual surprise; by hand
+  double unexplained = 0.8;   ///< share of the target's variance by which nothing is known; by hand
+  double most_unknown = 20.0;  ///< s² of a row that waits, in variances of the target; by hand
+  double set_off = 1e3;        ///< s² at which a vehicle at rest sets off, likewise; by hand
+  double far = 10.0;           ///< deviations of a velocity beyond which a row counts less; by hand
+  double garbage_s = 36.0;     ///< longest garbage of a sensor [s], as for the committee's guard
   double longest_step_s = 2.0;  ///< of two rows without a gap [s]; by hand
   double surprise = 16.0;       ///< e²/(σ² + s²) beyond which a row waits; by hand
-  double calm_s = 2.0;          ///< after which rows that wait are judged [s]; by hand
-  double most_distance = 0.5;   ///< Cook's, of rows that are learned; chosen on garbage of ../data
-  double least_changed = 0.2;   ///< Cook's, of rows of another vehicle; chosen on ../data/plants
-  double coherence = 0.6;       ///< Σ e e'/Σ e² of neighbours, beyond that of two equal; by hand
+  double patience = 4.0;    ///< times the longest garbage, of rows that no terms explain; by hand
+  double explained = 0.05;  ///< nats a row by which a restart explains more than the mean; by hand
+  double calm_s = 2.0;      ///< after which rows that wait are judged [s]; by hand
+  double most_distance = 0.5;  ///< Cook's, of rows that are learned; chosen on garbage of ../data
+  double least_changed = 0.2;  ///< Cook's, of rows of another vehicle; chosen on ../data/plants
+  double coherence = 0.6;      ///< Σ e e'/Σ e² of neighbours, beyond that of two equal; by hand
   double first_restart_s = 10.0, restart_s = 20.0;  ///< [s]; by hand
-  double ahead_s = 2.0;                    ///< least age of weights that are scored [s]; by hand
-  double nats = 10.0, nats_per_row = 0.7;  ///< of a restart that wins; by hand
-  double most_ratio = 2.0;                 ///< logarithm of a ratio of errors; by hand
+  double ahead_s = 2.0;                      ///< least age of weights that are scored [s]; by hand
+  double nats = 14.0, nats_at_start = 20.0;  ///< of a restart that wins; lab/random_vehicles.py
+  double nats_per_row = 0.7;                 ///< likewise; by hand
+  double most_ratio = 2.0;                   ///< logarithm of a ratio of errors; by hand
   double least_error = 0.02;     ///< square of an error, in variances of the noise; by hand
   double most_correlated = 0.2;  ///< τ of a young posterior, per row; by hand
   double kept = 50.0;  ///< independent samples of before a change; from 50, 150, 1,000 on ../data

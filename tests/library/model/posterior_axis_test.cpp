@@ -320,6 +320,49 @@ TEST(PosteriorLearner, DropsABurstOfGarbage) {
   EXPECT_EQ(model.axis(0).status().tally.changes, 0);
 }
 
+// Fifty seconds of noise in all columns, of any size: longer than rows wait for a vehicle.
+TEST(PosteriorLearner, DropsNoiseInAllColumns) {
+  const PlanarDrive clean = noisy_drive(1400, 1.0);
+  for (const double size : {30.0, 1e3, 1e12}) {
+    PlanarDrive drive = clean;
+    RandomStream random(8, "noise");
+    for (std::size_t i = 900; i < 1100; ++i) {
+      std::ranges::generate(drive.x[i], [&] { return size * random.normal(); });
+      std::ranges::generate(drive.y[i], [&] { return size * random.normal(); });
+    }
+    DynamicsModel model = new_model();
+    learn(model, drive, 0, drive.x.size());
+    DynamicsModel without = new_model();
+    learn(without, clean, 0, 900);
+    learn(without, clean, 1100, clean.x.size());
+    EXPECT_LT(error_elsewhere(model), 1.1 * error_elsewhere(without)) << size;
+    EXPECT_EQ(model.axis(0).status().tally.changes, 0) << size;
+  }
+}
+
+// A command that a wire breaks, for half a second: nothing is known of such commands, so no error
+// surprises, and such rows would rule all effects of the command by themselves.
+TEST(PosteriorLearner, LearnsNothingFromAbsurdCommands) {
+  const PlanarDrive clean = noisy_drive(1200, 1.0);
+  PlanarDrive drive = clean;
+  for (std::size_t i = 900; i < 903; ++i) {
+    drive.x[i][2] = i % 2 == 0 ? 1e10 : -3e10;
+  }
+  DynamicsModel model = new_model();
+  std::array<double, 2> said{};
+  double most = 0.0;
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    most = std::max(most, std::abs(drive.y[i][0]));
+    learn(model, drive, i, i + 1);
+    model.predict(drive.x[i], said);
+    EXPECT_LT(std::abs(said[0]), 2.5 * most) << i << ": all that is known of commands adds up";
+  }
+  DynamicsModel without = new_model();
+  learn(without, clean, 0, 900);
+  learn(without, clean, 903, clean.x.size());
+  EXPECT_LT(error_elsewhere(model), 1.1 * error_elsewhere(without));
+}
+
 // What a sensor says once spoils nothing beyond its row, however absurd.
 TEST(PosteriorLearner, OneAbsurdRowCostsNothing) {
   const PlanarDrive clean = noisy_drive(800, 1.0);
