@@ -96,14 +96,31 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
     }
   }
   if (posterior_.wants_solve() && posterior_.solve(features_.groups(), budget_)) {
-    const bool fits = has_scale_ && posterior_.sums().targets(prior_).scale <
-                                        kPosterior.outgrown * scaling_.target.scale;
-    fits ? serve() : change_scale();
+    take_over();
     decision.published = true;
   }
   decision.verdict = screen_.last_waits() ? Verdict::held_back : Verdict::accepted;
   tally_.implausible += screen_.dropped();
   return decision;
+}
+
+void PosteriorAxis::learn_held_back() {
+  screen_.end_waiting(features_, posterior_);
+  tally_.implausible += screen_.dropped();
+  while (const std::optional<RowScreen::Due> due = screen_.next()) {
+    learn(*due);
+  }
+  if (posterior_.ready()) {
+    settle(posterior_, features_.groups());
+    take_over();
+  }
+}
+
+// The solution of the posterior goes into service.
+void PosteriorAxis::take_over() {
+  const bool fits = has_scale_ && posterior_.sums().targets(prior_).scale <
+                                      kPosterior.outgrown * scaling_.target.scale;
+  fits ? serve() : change_scale();
 }
 
 // Forgets what was learned; of the rows that are due, the first make a model at once.

@@ -48,6 +48,7 @@ class PosteriorAxis final : public ModelAxis {
     budget_ = budget;
     mixture_.limit(budget);
   }
+  void learn_held_back() override;
   bool unfinished() const override { return posterior_.wants_solve() || mixture_.unfinished(); }
   bool trusted_last() const override { return trusted_last_; }
 
@@ -96,6 +97,7 @@ class PosteriorAxis final : public ModelAxis {
   TermWeights in_scale(TermWeights weights, double bias) const;
   TermWeights scaled(std::span<const double> theta, double centre) const;
   void tell_anew(std::span<const double> step, const TermWeights& first, double kept);
+  void take_over();
   void serve();
   void assign_members();
   ValueRange certain_range();

@@ -341,6 +341,8 @@ void Posterior::tell_anew(std::span<const double> step, std::span<const double> 
     as_vector(told_).head(terms) += as_vector(first);
   }
   if (step.size() > first_.size()) {
+    // The weights told rest on more than the rows told anew, which the prior would shrink.
+    served_at_ = seen_.rows + kPosterior.recalled_rows;
     task_ = Task::none;  // a solve at hand follows steps of the first features only
     round_ = 0;
   }

@@ -111,7 +111,8 @@ class Posterior {
 
   /// The samples become those of a vehicle with other weights: each target grows by stepᵀφ, and
   /// weights in service follow, those of the first features alone by `first`. From then on, samples
-  /// so far weigh as `kept` independent ones, at most. Cost O(m²).
+  /// so far weigh as `kept` independent ones, at most. A step of all weights stays in service for
+  /// 100 rows. Cost O(m²).
   void tell_anew(std::span<const double> step, std::span<const double> first, double kept);
 
   /// The features from the number `first` on become others, φ' = Tᵀ φ, and the sums TᵀAT and Tᵀb.

@@ -56,18 +56,25 @@ void RowScreen::add(const RecentRows::Row& row, const Features& features,
   rows_.push(row, last_waits_ ? State::waits : State::due);
   waits_since_ = !waits ? rows_.end() : std::min(waits_since_, rows_.end() - 1);
   run_restarts(row, features, phi, live);
-  end_waiting(row.t, features, live);
+  limit_waiting(features, live);
 }
 
-// Rows that wait are learned, or judged.
-void RowScreen::end_waiting(double t, const Features& features, const Posterior& live) {
+// Rows that have waited for long enough are learned, or judged.
+void RowScreen::limit_waiting(const Features& features, const Posterior& live) {
   const bool is_crowded = rows_.full() && waits_since_ == rows_.begin();
   // What no terms explain may be garbage for longer.
   const double most_s =
       kPosterior.garbage_s * (restarts_[kRestarts].explains() ? 1.0 : kPosterior.patience);
-  if (waiting() && (t - waits_s_ > most_s || is_crowded)) {
+  if (waiting() && (last_s_ - waits_s_ > most_s || is_crowded)) {
     release(State::due);
-  } else if (waiting() && t - waited_s_ > kPosterior.calm_s) {
+  } else if (waiting() && last_s_ - waited_s_ > kPosterior.calm_s) {
+    judge(features, live);
+  }
+}
+
+void RowScreen::end_waiting(const Features& features, const Posterior& live) {
+  dropped_ = 0;
+  if (waiting()) {
     judge(features, live);
   }
 }

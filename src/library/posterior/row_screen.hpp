@@ -56,6 +56,9 @@ class RowScreen {
   /// next row is learned.
   std::optional<Won> won() const { return won_; }
 
+  /// Rows that wait are judged at once, as at the end of a log. `live`: as of add().
+  void end_waiting(const Features& features, const Posterior& live);
+
   /// `live` knows a change of the vehicle since a time [s] from now on: rows since then that wait
   /// or were dropped are due.
   void believe_change(double since_s);
@@ -83,7 +86,7 @@ class RowScreen {
   void run_restarts(const RecentRows::Row& row, const Features& features,
                     std::span<const double> phi, const Posterior& live);
   void take_over(const Restart& winner);
-  void end_waiting(double t, const Features& features, const Posterior& live);
+  void limit_waiting(const Features& features, const Posterior& live);
   void judge(const Features& features, const Posterior& live);
   double distance(std::size_t first, bool all, const Features& features, const Posterior& live);
   void release(State state);

@@ -11,14 +11,15 @@ namespace kelpie {
 inline constexpr struct PosteriorTuning {
   double huber = 3.0;     ///< deviations of an error that bound its influence; by hand
   double freedom = 10.0;  ///< ν of Student's t (Lange et al. 1989); chosen on ../data/vehicles
-  double most_deviations = 4.0;     ///< of an error in τ; by hand
-  double first_rows = 10.0;         ///< rows before the first solve; by hand
-  double least_deviation = 1e-12;   ///< of targets, per mean: rounding
-  double solve_share = 0.05;        ///< rows between solves per row so far; by hand
-  double most_unsolved = 100.0;     ///< rows between solves, at most; by hand
-  double rows_per_feature = 0.125;  ///< rows between solves, at least, per feature; by hand
-  double widths_growth = 1.1;       ///< of rows between steps of the evidence; by hand
-  double young_rows = 200.0;        ///< up to which a solve has more rounds; by hand
+  double most_deviations = 4.0;    ///< of an error in τ; by hand
+  double first_rows = 10.0;        ///< rows before the first solve; by hand
+  double least_deviation = 1e-12;  ///< of targets, per mean: rounding
+  double solve_share = 0.05;       ///< rows between solves per row so far; by hand
+  double most_unsolved = 10.0;     ///< rows between solves, at most; from 5 to 100 on ../data
+  double rows_per_feature = 0.03;  ///< rows between solves, at least, per feature; likewise
+  double recalled_rows = 100.0;    ///< without a solve after a recall; by hand
+  double widths_growth = 1.1;      ///< of rows between steps of the evidence; by hand
+  double young_rows = 200.0;       ///< up to which a solve has more rounds; by hand
   int young_rounds = 3;
   double hyperprior = 0.01;        ///< h of groups of terms; chosen on lab/random_vehicles.py
   double kernel_hyperprior = 0.3;  ///< h of the kernel; chosen on ../data/vehicles

@@ -435,6 +435,28 @@ TEST(PosteriorLearner, AddsUpThrustersThatNeverRanTogether) {
   }
 }
 
+// The last second of a log, a manoeuvre as never before, waits when the log ends.
+TEST(PosteriorLearner, LearnsWhatWaitsAtTheEndOfALog) {
+  constexpr std::size_t kLast = 1196;
+  PlanarDrive drive = noisy_drive(1200, 1.0);
+  for (std::size_t i = 0; i < drive.x.size(); ++i) {
+    drive.x[i][1] = i < kLast ? 0.0 : 0.4;  // turns for the first time
+    drive.y[i] = PlanarDrive::accelerations(drive.x[i]);
+  }
+  DynamicsModel model = new_model();
+  learn(model, drive, 0, drive.x.size());
+  ASSERT_EQ(model.decisions()[1].verdict, Verdict::held_back);
+  const auto error = [&] {
+    std::array<double, 2> said{};
+    model.predict(drive.x.back(), said);
+    return std::abs(said[1] - drive.y.back()[1]);
+  };
+  const double before = error();
+  model.learn_held_back();
+  EXPECT_LT(error(), 0.5 * before);
+  EXPECT_EQ(model.axis(1).status().tally.accepted, 1200);
+}
+
 // Full ahead for two seconds, every two minutes: no garbage, for nothing known is contradicted.
 TEST(PosteriorLearner, LearnsRareManoeuvres) {
   PlanarDrive drive = noisy_drive(4000, 1.0);
