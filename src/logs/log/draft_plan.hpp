@@ -7,6 +7,7 @@
 #include "bag/series.hpp"
 #include "log/candidates.hpp"
 #include "log/dataset.hpp"
+#include "log/row_clock.hpp"
 
 namespace kelpie::log {
 
@@ -51,14 +52,11 @@ struct DraftPlan {
   std::vector<std::string> open{};     ///< Draft::open
 };
 
-/// Chooses the signals by rank. `time` is a table's column of time, or "".
-DraftPlan plan_draft(const bag::BagReport& report, const std::string& time);
+/// Chooses the signals by rank. `clock`: of a table.
+DraftPlan plan_draft(const bag::BagReport& report, RowClock clock);
 
 /// Formats the file. `log` is the name of the log, `definitions` the folder of .msg files or "".
 std::string draft_text(const DraftPlan& plan, const std::string& log,
                        const std::string& definitions);
-
-/// The time column of a table to be sampled, by any known name or by time stamps; or "".
-std::string time_field(const Table& table);
 
 }  // namespace kelpie::log

@@ -196,10 +196,12 @@ constexpr std::array kPoseWords = std::to_array<PoseWords>({
 });
 
 constexpr std::array kTimes = std::to_array<std::string_view>(
-    {"timestamp",    "time_s",  "t_s",          "times",        "secs",        "seconds",
-     "sec",          "elapsed", "elapsed_time", "elapsed_s",    "time_ms",     "t_ms",
-     "timestamp_ms", "time_us", "t_us",         "timestamp_us", "rosbag_time", "rosbagtimestamp",
-     "clock",        "date",    "datetime",     "unix_time"});
+    {"timestamp",    "time_s",   "t_s",          "times",        "secs",        "seconds",
+     "sec",          "elapsed",  "elapsed_time", "elapsed_s",    "time_ms",     "t_ms",
+     "timestamp_ms", "time_us",  "t_us",         "timestamp_us", "rosbag_time", "rosbagtimestamp",
+     "clock",        "date",     "datetime",     "unix_time",    "epoch",       "utc",
+     "utc_time",     "tow",      "gps_tow",      "gps_time",     "gps_seconds", "m_present_time",
+     "time_boot_ms", "time_usec"});
 
 bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;

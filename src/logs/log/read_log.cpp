@@ -160,12 +160,12 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
 // Every column is a topic of its own: its empty cells have no samples.
 std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& plan,
                                      const std::string& time) {
-  if (time.empty()) {
-    refuse(table.source, "time", "is missing; [log] has to name the column of the time");
+  if (const std::string known = row_clock(table, {.rate_hz = plan.rate_hz}).column;
+      time.empty() && !known.empty()) {
+    refuse(table.source, "time",
+           "is missing; [log] has to name the column of the time, as in time = \"" + known + "\"");
   }
-  const std::size_t time_column = table.find(time);
-  table.require_numbers(time_column);
-  const double unit_s = table.seconds_per_unit(time_column);
+  const std::vector<double> times_s = row_times_s(table, time, plan.rate_hz);
   std::vector<Signal> signals;
   for (const SamplingPlan::Source& source : plan.sources) {
     const std::size_t column = table.find(source.from);
@@ -175,8 +175,8 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& pla
     signal.from = source.from;
     signal.topic = source.from;
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      if (std::isfinite(table.columns[time_column][row])) {
-        signal.times_s.push_back(unit_s * table.columns[time_column][row]);
+      if (std::isfinite(times_s[row])) {
+        signal.times_s.push_back(times_s[row]);
         signal.values.push_back(table.columns[column][row]);
       }
     }
@@ -230,20 +230,6 @@ void add_neutral_pulses(const Table& table, Roles& roles) {
     });
     if (is_whole && are_pulses_about_rest(low, high)) {
       roles.actuators[input] = {.neutral = kNeutralPulseUs};
-    }
-  }
-}
-
-// The table's units as a draft is to see them where the user says others: stamps have theirs, and
-// what else --units converts, on top of any draft, has none.
-void tell_units(const Roles& roles, Table& table) {
-  const std::string time = roles.time.empty() ? time_field(table) : roles.time;
-  table.units.resize(table.names.size());
-  for (const auto& [name, text] : roles.units) {
-    const auto found = std::ranges::find(table.names, name);
-    if (found != table.names.end()) {
-      table.units[static_cast<std::size_t>(found - table.names.begin())] =
-          name == time ? text : std::string();
     }
   }
 }
@@ -411,10 +397,7 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
   if (!is_of_bag && can_be_taken(table, roles, why_not)) {
     return taken_log(std::move(table), roles);
   }
-  if (!is_of_bag) {
-    tell_units(roles, table);
-  }
-  Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles.time);
+  Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles);
   if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
     return taken_log(std::move(table), roles);  // who uses it says what is missing
   }
@@ -432,10 +415,10 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
 
 Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
   const bool is_of_bag = bag::is_bag(source.path);
-  Table table = is_of_bag ? Table{} : read_csv(source.path);
-  const std::string missing = set_missing_pulses(table);
+  std::string told;
+  Table table = is_of_bag ? Table{} : read_table(source.path, roles, told);
   Log log = log_of(source, is_of_bag, std::move(table), config, roles);
-  log.losses += missing;
+  log.losses += told;
   return log;
 }
 

@@ -19,6 +19,18 @@ inline constexpr struct Tuning {
   std::size_t most_rows = 10'000'000;         ///< of samples: 11 days at 10 Hz; by hand
   double joined_gap_s = 60.0;                 ///< between joined logs; by hand
 
+  /// The clock of a table's rows.
+  struct Clock {
+    double slowest_hz = 0.01;          ///< of rows; by hand
+    double fastest_hz = 1e5;           ///< by hand
+    double longest_step_s = 1.1;       ///< of rows in another unit than s; by hand
+    double longest_memory_s = 300.0;   ///< of velocities, until half is forgotten; by hand
+    double least_whole_step_s = 0.9;   ///< of whole numbers that may count ms; by hand
+    double since_1970_s = 1e8;         ///< numbers beyond tell their unit by their size; by hand
+    double near_step_s = 60.0;         ///< distance from an hour, a day, a week; by hand
+    double longest_step_back_s = 1.0;  ///< that is sorted without a word; by hand
+  } clock;
+
   /// Plausibility: in CSV logs of real and simulated vehicles ratios lie between 0.83 and 1.08
   /// where the correlation is 0.8 or more; in an autopilot's log at rest on a bench one is 0.38.
   struct Plausibility {

@@ -20,6 +20,7 @@
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "log/dataset.hpp"
+#include "log/row_clock.hpp"
 #include "model/snapshot.hpp"
 #include "study/alignment.hpp"
 #include "study/metrics.hpp"
@@ -57,23 +58,6 @@ struct NewColumn {
   std::vector<double> values;  // NaN in rows that aren't seen
 };
 
-// Of the column `time`; without one, rows come at an even rate.
-std::vector<double> row_times_s(const log::Table& table, const std::string& time, double rate_hz) {
-  std::vector<double> times_s(table.rows());
-  if (time.empty()) {
-    for (std::size_t row = 0; row < times_s.size(); ++row) {
-      times_s[row] = static_cast<double>(row) / rate_hz;
-    }
-    return times_s;
-  }
-  const std::size_t column = table.find(time);
-  table.require_numbers(column);
-  const double unit_s = table.seconds_per_unit(column);
-  std::ranges::transform(table.columns[column], times_s.begin(),
-                         [&](double value) { return unit_s * value; });
-  return times_s;
-}
-
 // The rows with finite inputs, as the model is to see them.
 struct SeenRows {
   log::Dataset data;
@@ -94,7 +78,7 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
   const double rate_hz = roles.rate_hz > 0.0        ? roles.rate_hz
                          : model.alignment.shifts() ? model.alignment.rate_hz()
                                                     : 1.0;
-  const std::vector<double> times_s = row_times_s(table, time, rate_hz);
+  const std::vector<double> times_s = log::row_times_s(table, time, rate_hz);
   SeenRows seen;
   seen.data.source = table.source;
   seen.data.input_names = model.input_names;
