@@ -34,7 +34,7 @@ std::string in_small_letters(std::string_view name) {
 }
 
 const std::pair<std::string_view, StampUnit>* ending_of(std::string_view name) {
-  const auto found = std::ranges::find_if(kEndings, [&](const auto& known) {
+  const auto* const found = std::ranges::find_if(kEndings, [&](const auto& known) {
     return name.ends_with(known.first) && name.size() > known.first.size();
   });
   return found == kEndings.end() ? nullptr : found;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/text.hpp"
@@ -10,6 +11,7 @@
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "log/draft_plan.hpp"
+#include "log/pose_check.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -74,6 +76,22 @@ std::vector<std::string> undecoded(const bag::BagReport& report) {
   return lines;
 }
 
+// Topics of odometry whose twist lies along the axes of the world, as gazebo's p3d gives it.
+std::set<std::string> topics_of_world(const bag::BagReport& report, const LogSource& source) {
+  std::set<std::string> topics;
+  for (const bag::TopicReport& topic : report.topics) {
+    try {
+      if (short_type(topic.type) == "nav_msgs/Odometry" && topic.not_decoded.empty() &&
+          topic.messages > 0 && !source.path.empty() && is_twist_of_world(source, topic.name)) {
+        topics.insert(topic.name);
+      }
+    } catch (const std::exception&) {  // whoever reads the topic says what is wrong with it
+      continue;
+    }
+  }
+  return topics;
+}
+
 }  // namespace
 
 LogConfig Draft::config(const std::string& source) const {
@@ -105,7 +123,7 @@ std::string Draft::summary(const std::string& source) const {
 }
 
 Draft draft_of(const bag::BagReport& report, const LogSource& source) {
-  DraftPlan plan = plan_draft(report, {});
+  DraftPlan plan = plan_draft(report, {}, topics_of_world(report, source));
   if (!plan.open.empty()) {
     const std::vector<std::string> lines = undecoded(report);
     plan.open.insert(plan.open.end(), lines.begin(), lines.end());
@@ -118,7 +136,7 @@ Draft draft_of(const Table& table, const Roles& given) {
     return written(*ready, table.source, "");
   }
   const RowClock clock = row_clock(table, given);
-  return written(plan_draft(inspect_table(table, clock), clock), table.source, "");
+  return written(plan_draft(inspect_table(table, clock), clock, {}), table.source, "");
 }
 
 }  // namespace kelpie::log

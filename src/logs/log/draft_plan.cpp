@@ -253,12 +253,18 @@ DraftUnit draft_unit(const std::string& given) {
 
 class Planner {
  public:
-  Planner(const bag::BagReport& report, RowClock clock)
+  Planner(const bag::BagReport& report, RowClock clock, const std::set<std::string>& of_world)
       : report_(report),
         clock_(std::move(clock)),
         all_(find_candidates(report)),
         motors_(motor_outputs(report.autopilot.parameters)),
         is_submarine_(is_submarine(report)) {
+    for (Candidate& one : all_) {
+      if (one.part == Part::velocity && of_world.contains(topic_of(one))) {
+        one.frame = "ENU";
+        one.why = "along the axes of the world, as the poses of the same messages show";
+      }
+    }
     plan_.time = clock_.column;
     plan_.is_of_bag = report.topics.size() != 1 || !report.topics.front().name.empty();
   }
@@ -271,6 +277,7 @@ class Planner {
     const std::optional<Candidate> commands = choose(Part::commands, "commands", "");
     if (velocity) {
       take_motion(*velocity, 0);
+      take_validity(topic_of(*velocity));
       turn_velocity(*velocity);
     }
     if (rates) {
@@ -573,6 +580,22 @@ class Planner {
                         std::move(group));
   }
 
+  // What the velocity's message says of itself, where that is not always good.
+  void take_validity(const std::string& name) {
+    const auto topic = std::ranges::find(report_.topics, name, &bag::TopicReport::name);
+    const auto known = validity_of_message(short_type(topic->type));
+    const auto field = !known
+                           ? topic->fields.end()
+                           : std::ranges::find(topic->fields, known->first, &bag::FieldRange::path);
+    if (field == topic->fields.end() || field->low >= known->second || !can_be_written(name)) {
+      return;
+    }
+    const std::string least = fmt::format("{:g}", known->second);
+    plan_.valid.push_back({name + ":" + known->first, least,
+                           fmt::format("{:g} to {:g} in this log", field->low, field->high)});
+    plan_.taken.push_back(fmt::format("velocities where {} is {} or more", known->first, least));
+  }
+
   // The attitude of the world `frame`, of `topic` before all others; or null.
   const Candidate* attitude_of(const std::string& frame, const std::string& topic) const {
     const Candidate* best = nullptr;
@@ -766,8 +789,9 @@ class Planner {
 
 }  // namespace
 
-DraftPlan plan_draft(const bag::BagReport& report, RowClock clock) {
-  return Planner(report, std::move(clock)).run();
+DraftPlan plan_draft(const bag::BagReport& report, RowClock clock,
+                     const std::set<std::string>& of_world) {
+  return Planner(report, std::move(clock), of_world).run();
 }
 
 }  // namespace kelpie::log

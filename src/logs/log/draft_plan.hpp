@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct DraftPlan {
   std::vector<Group> commands{};
   std::vector<Line> neutrals{};  ///< `from` is the command at rest
   std::vector<Line> scales{};    ///< `from` is the factor, in the syntax of [log.scale]
+  std::vector<Line> valid{};  ///< `name` is the column, `from` the least value of a valid message
   bool armed_only = false;
   std::vector<Line> derived{};  ///< `from` is the differentiated column
   /// Fields of the log that change, where no velocities or no commands are known; without `name`.
@@ -52,8 +54,10 @@ struct DraftPlan {
   std::vector<std::string> open{};     ///< Draft::open
 };
 
-/// Chooses the signals by rank. `clock`: of a table.
-DraftPlan plan_draft(const bag::BagReport& report, RowClock clock);
+/// Chooses the signals by rank. `clock`: of a table; `of_world`: topics of odometry whose twist
+/// lies along the axes of the world.
+DraftPlan plan_draft(const bag::BagReport& report, RowClock clock,
+                     const std::set<std::string>& of_world);
 
 /// Formats the file. `log` is the name of the log, `definitions` the folder of .msg files or "".
 std::string draft_text(const DraftPlan& plan, const std::string& log,

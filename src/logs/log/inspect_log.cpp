@@ -10,6 +10,7 @@
 #include "log/dataset.hpp"
 #include "log/draft.hpp"
 #include "log/draft_plan.hpp"
+#include "log/validity.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -73,6 +74,7 @@ bag::BagReport inspect_table(const Table& table, const RowClock& clock) {
 
 Table read_table(const std::filesystem::path& file, const Roles& given, std::string& told) {
   Table table = read_csv(file);
+  told += drop_missing(table, given);
   told += set_missing_pulses(table);
   told += settle_time_unit(table, given);
   const std::string time = row_clock(table, given).column;

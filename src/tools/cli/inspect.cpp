@@ -88,6 +88,7 @@ void add_inspect(CLI::App& app) {
   add_bag_options(*command, options->log.source, "log", "the log: " + log_formats());
   add_clock_options(*command, options->log.time, options->log.rate_hz);
   add_units_option(*command, options->log.units);
+  add_missing_option(*command, options->log.missing);
   add_file(command, "--json", options->json, "write the report to this file, too");
   add_file(command, "--template", options->draft,
            "write the configuration that `kelpie learn` takes by --config to this file, as "

@@ -36,6 +36,7 @@ struct PredictArguments {
   std::string time;
   double rate_hz = 0.0;
   std::vector<std::string> units;
+  std::vector<std::string> missing;
   std::vector<std::string> pose;
   bool jacobian = false;
   std::string current;
@@ -265,6 +266,7 @@ void predict_log(const PredictArguments& options, TrainedModel& model,
   }
   add_units(options.units, roles.units);
   roles.pose = options.pose;
+  roles.missing = options.missing;
   if (roles.rate_hz != 0.0) {
     require_range("rate", roles.rate_hz, {.low = 0.0, .open = true}, "rows per second");
   }
@@ -314,6 +316,7 @@ void add_predict(CLI::App& app) {
   add_bag_options(*command, options->source, "log", "the log: " + log_formats());
   add_clock_options(*command, options->time, options->rate_hz);
   add_units_option(*command, options->units);
+  add_missing_option(*command, options->missing);
   add_pose_option(*command, options->pose);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
   add_model(command, "--model", options->model);

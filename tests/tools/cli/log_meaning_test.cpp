@@ -5,13 +5,17 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bag/mcap_writer.hpp"
+#include "bag/message_builder.hpp"
 #include "cli/command.hpp"
 
 namespace kelpie::log_meaning_test {
@@ -116,8 +120,8 @@ class LogMeaning : public testing::CommandTest {
   void expect(const std::vector<Case>& cases) {
     for (const Case& one : cases) {
       write("log.csv", one.log);
-      const Outcome outcome =
-          run("learn log.csv --set preset=paper --set buffer=50 --out out " + one.options);
+      const Outcome outcome = run(
+          "learn log.csv --align none --set preset=paper --set buffer=50 --out out " + one.options);
       const std::string head = one.log.substr(0, one.log.find('\n', one.log.find('\n') + 1));
       EXPECT_EQ(outcome.exit_code, one.exit_code) << head << "\n" << outcome.err;
       EXPECT_NE((outcome.out + outcome.err).find(one.message), std::string::npos)
@@ -226,6 +230,200 @@ TEST_F(LogMeaning, TablesOfOtherPrograms) {
       {"{\"format\": 1}\n", "", 2, "a model of `kelpie learn` is taken by --model or --from"},
       {"\xFF\xD8\xFF\xE0", "", 2, "is a picture (JPEG)"},
   });
+}
+
+TEST_F(LogMeaning, RolesByReason) {
+  const auto noise = [](double rate) {
+    return [=](const Row& row) { return fmt::format("{:.4f}", 40.0 + std::sin(rate * row.k)); };
+  };
+  const auto with = [&](const std::string& names) {
+    Columns more;
+    for (const std::string& name : testing::words_of(names)) {
+      more.emplace_back(name, noise(1.0 + 0.1 * static_cast<double>(more.size())));
+    }
+    return boat("t", number(&Row::t), more);
+  };
+  const std::string commands = "commands: n1, n2\n";
+  expect({
+      {with("T_motor m_nb_sat motor_controller_humidity usv_control/sast/x_gain az_mps2 "
+            "thruster_manager/rssi motor_driver/board/leak control/reference/heading n_sats"),
+       "", 0, commands},
+      {with("m_depth m_pitch m_vacuum"), "", 0, commands},
+      {with("thr_ref1 motor_aft/cmd"), "", 0, "commands: motor_aft_cmd, n1, n2, thr_ref1\n"},
+  });
+  // Beside accelerations every column may be an input, but no other value of a velocity or command.
+  std::vector<Row> rows = drive(0.2, 600);
+  const auto slope = [&](double Row::*of) {
+    return [&rows, of](const Row& row) {
+      const auto k = static_cast<std::size_t>(std::clamp(row.k, 1, 598));
+      return fmt::format("{:.6f}", (rows[k + 1].*of - rows[k - 1].*of) / 0.4);
+    };
+  };
+  const auto next = [&](const Row& row) {
+    return fmt::format("{:.6f}", rows[static_cast<std::size_t>(std::min(row.k + 1, 599))].u);
+  };
+  const std::string ready = boat("t", number(&Row::t),
+                                 {{"udot", slope(&Row::u)},
+                                  {"rdot", slope(&Row::r)},
+                                  {"true_udot", slope(&Row::u)},
+                                  {"tv_u", number(&Row::u)},
+                                  {"u_next", next},
+                                  {"later", next},
+                                  {"act_n1", number(&Row::n1, 0.9)},
+                                  {"x_gain", noise(1.0)},
+                                  {"wave", noise(1.1)}});
+  expect({{ready, "", 0, "commands: n1, n2, wave\n"},
+          {ready, "", 0, "u_next: is left out of the inputs: u of another row; --inputs takes it"},
+          {ready, "", 0, "later: is left out of the inputs: goes with u, read 1 rows later"}});
+}
+
+TEST_F(LogMeaning, VelocitiesThatAreNotMeasured) {
+  const auto is_out = [](const Row& row) { return row.k % 150 > 120; };
+  const auto unless = [=](double Row::*of, const std::string& mark) {
+    return [=](const Row& row) { return is_out(row) ? mark : fmt::format("{:.6f}", row.*of); };
+  };
+  const auto log = [&](const std::string& mark, const Columns& more = {}) {
+    Columns columns{{"t", number(&Row::t)},       {"u", unless(&Row::u, mark)},
+                    {"v", unless(&Row::v, mark)}, {"r", number(&Row::r)},
+                    {"n1", number(&Row::n1)},     {"n2", number(&Row::n2)}};
+    columns.insert(columns.end(), more.begin(), more.end());
+    return log_of(columns);
+  };
+  const auto flag = [&](const std::string& valid, const std::string& invalid) {
+    return [=](const Row& row) { return is_out(row) ? invalid : valid; };
+  };
+  const std::string held = "0.01";  // a value that nothing but the flag tells from a measurement
+  expect({
+      {log(held, {{"velocity_valid", flag("1", "0")}}), "", 0,
+       "velocity_valid calls velocities invalid in 116 rows, the first on line 123: u, v are not"},
+      {log(held, {{"bottom_lock", flag("True", "False")}}), "", 0,
+       "calls velocities invalid in 116"},
+      {log(held, {{"dvl_invalid", flag("0", "1")}}), "", 0, "calls velocities invalid in 116"},
+      {log(held, {{"fom", flag("0.002", "9.9")}}), "", 0, "calls velocities invalid in 116"},
+      {log("-32.768"), "", 0, "u: -32.768, a sensor's mark of no value, in 116 rows"},
+      {log("-999"), "", 0, "v: -999, a sensor's mark of no value, in 116 rows"},
+      {log("77.7"), "", 0, "u: 77.7, a sensor's mark of no value, in 116 rows"},
+      {log("0"), "", 0, "exact zeros between rows of a moving vehicle in"},
+      {log("-999"), "--missing none", 0, "R²"},
+      {log("0.5"), "--missing u=0.5,v=0.5", 0, "R²"},
+      {log("0.5"), "--missing u=half", 2, "'u=half' is no number; write -999, u=-999, or none"},
+      {log(held, {{"velocity_valid", [](const Row&) { return "0"; }}}), "", 2,
+       "no velocity was measured: velocity_valid calls velocities invalid in every row"},
+  });
+}
+
+TEST_F(LogMeaning, VelocitiesBesidePoses) {
+  const auto turned = [](double angle, bool is_of_u) {
+    return [=](const Row& row) {
+      const double own = is_of_u ? std::cos(angle) * row.u - std::sin(angle) * row.v
+                                 : std::sin(angle) * row.u + std::cos(angle) * row.v;
+      return fmt::format("{:.6f}", own);
+    };
+  };
+  const auto of_world = [](bool is_of_x) {
+    return [=](const Row& row) {
+      const double own = is_of_x ? std::cos(row.psi) * row.u - std::sin(row.psi) * row.v
+                                 : std::sin(row.psi) * row.u + std::cos(row.psi) * row.v;
+      return fmt::format("{:.6f}", own);
+    };
+  };
+  const auto log = [](const Cell& u, const Cell& v, const Cell& r) {
+    return log_of({{"t", number(&Row::t)},
+                   {"x", number(&Row::x)},
+                   {"y", number(&Row::y)},
+                   {"psi", number(&Row::psi)},
+                   {"u", u},
+                   {"v", v},
+                   {"r", r},
+                   {"n1", number(&Row::n1)},
+                   {"n2", number(&Row::n2)}});
+  };
+  const Cell u = number(&Row::u);
+  const Cell v = number(&Row::v);
+  const Cell r = number(&Row::r);
+  expect({
+      {log(u, v, r), "", 0, kTwoMinutes},
+      {log(of_world(true), of_world(false), r), "", 2,
+       "u and v are velocities along the axes of the world, not of the vehicle"},
+      {log(of_world(true), of_world(false), r), "--pose x,y,psi", 0, "R²"},
+      {log(of_world(true), of_world(false), r), "--accept implausible", 0, kTwoMinutes},
+      {log(number(&Row::u, 100.0), number(&Row::v, 100.0), r), "", 2, "--units u=cm/s,v=cm/s"},
+      {log(number(&Row::u, 100.0), number(&Row::v, 100.0), r), "--units u=cm/s,v=cm/s", 0,
+       kTwoMinutes},
+      {log(u, v, number(&Row::r, -1.0)), "", 2, "r has the sign opposite to the slope of psi"},
+      {log(u, v, number(&Row::r, 57.29578)), "", 2, "--units r=deg/s converts"},
+      {log(v, u, r), "", 2, "u and v are exchanged"},
+      {log(turned(0.7854, true), turned(0.7854, false), r), "", 0,
+       "the ways between poses lie -45 degrees beside u and v"},
+  });
+}
+
+// The boat as a recording: a message of `type` on `topic`, the thrusters, and `others`.
+using Fill = std::function<void(bag::MessageBuilder&, const Row&)>;
+
+std::string recording(const std::string& topic, const std::string& type, const Fill& fill,
+                      const std::vector<std::string>& others = {}) {
+  const bag::MessageDefinitions definitions;
+  bag::McapWriter writer;
+  std::vector<bag::MessageBuilder> builders;
+  std::vector<std::string> names{topic, "/thrusters/left", "/thrusters/right"};
+  names.insert(names.end(), others.begin(), others.end());
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string own = k == 0 ? type : "std_msgs/msg/Float64";
+    writer.add_topic({.name = names[k], .type = own, .definition = definitions.full_text(own)});
+    builders.emplace_back(definitions.type(own));
+  }
+  for (const Row& row : drive(0.2, 600)) {
+    const auto time_ns = static_cast<std::int64_t>(1e9 * row.t);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (k == 0) {
+        fill(builders[k], row);
+      } else {
+        builders[k].set("data", k == 1 ? row.n1 : k == 2 ? row.n2 : std::sin(row.t));
+      }
+      writer.write({.topic = k,
+                    .receive_ns = time_ns,
+                    .publish_ns = time_ns,
+                    .sequence = static_cast<std::uint32_t>(row.k),
+                    .data = builders[k].bytes()});
+    }
+  }
+  return writer.take() + writer.finish();
+}
+
+TEST_F(LogMeaning, Recordings) {
+  const Fill dvl = [](bag::MessageBuilder& message, const Row& row) {
+    const bool is_valid = row.k % 150 < 120;
+    message.set("velocity.x", is_valid ? row.u : 0.01);
+    message.set("velocity.y", is_valid ? row.v : 0.01);
+    message.set("velocity_valid", is_valid ? 1.0 : 0.0);
+  };
+  const Fill odometry = [](bag::MessageBuilder& message, const Row& row) {
+    message.set("pose.pose.position.x", row.x);
+    message.set("pose.pose.position.y", row.y);
+    message.set("pose.pose.orientation.w", std::cos(row.psi / 2.0));
+    message.set("pose.pose.orientation.z", std::sin(row.psi / 2.0));
+    message.set("twist.twist.linear.x", row.u);
+    message.set("twist.twist.linear.y", row.v);
+    message.set("twist.twist.angular.z", row.r);
+  };
+  const Fill of_world = [&](bag::MessageBuilder& message, const Row& row) {
+    odometry(message, row);
+    message.set("twist.twist.linear.x", std::cos(row.psi) * row.u - std::sin(row.psi) * row.v);
+    message.set("twist.twist.linear.y", std::sin(row.psi) * row.u + std::cos(row.psi) * row.v);
+  };
+  const std::string commands = "commands: left, right\n";
+  expect({
+      {recording("/dvl/data", "dvl_msgs/msg/DVL", dvl), "", 0,
+       "120 of 600 messages are no measurement of u"},
+      {recording("/odom", "nav_msgs/msg/Odometry", odometry,
+                 {"/usv_control/sast/y_sigma", "/motor_driver/board/humidity",
+                  "/thruster_manager/rssi", "/control/reference/heading"}),
+       "", 0, commands},
+      {recording("/boat/odometry", "nav_msgs/msg/Odometry", of_world), "", 0, commands},
+  });
+  testing::succeeded(run("inspect log.csv --template world.toml"));
+  EXPECT_NE(content("world.toml").find("from = \"ENU\", to = \"FLU\""), std::string::npos);
 }
 
 }  // namespace
