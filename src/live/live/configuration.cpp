@@ -82,15 +82,6 @@ void endpoint(const file::TomlNode& value, std::string& text) {
   file::located(value, [&] { return parse_endpoint(text, ""); });
 }
 
-// {"/dvl:velocity_valid" = 1}: the least value of a valid message.
-void read_validity(const file::TomlNode& table, std::map<std::string, double>& valid) {
-  for (const file::TomlNode& value :
-       table.members("a table of fields, as in {\"/dvl:velocity_valid\" = 1}")) {
-    file::located(value, [&] { return bag::parse_column(value.key()); });
-    valid[value.key()] = value.number("the least value of a valid message, a number");
-  }
-}
-
 ParameterSettings read_parameters(const file::TomlNode& table) {
   table.table({"tell", "percent", "thrusters", "thrust"});
   ParameterSettings settings;
@@ -152,7 +143,7 @@ LiveSettings read_live(const file::TomlNode& live) {
     }
   }
   if (live.has("valid")) {
-    read_validity(live["valid"], settings.valid);
+    log::read_validity(live["valid"], settings.valid);
   }
   if (live.has("parameters")) {
     settings.parameters = read_parameters(live["parameters"]);
@@ -252,6 +243,7 @@ Configuration configuration_of(const file::TomlNode& root, const std::string& fi
       check_heading(root["live"]["heading"], configuration);
     }
   }
+  configuration.live.valid.insert(configuration.log.valid.begin(), configuration.log.valid.end());
   return configuration;
 }
 

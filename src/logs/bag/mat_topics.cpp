@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bag/reader.hpp"
+#include "bag/stamp_unit.hpp"
 #include "bag/tuning.hpp"
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
@@ -32,34 +33,12 @@ std::size_t vector_length(const MatArray& array) {
   return array.rows == 1 || array.columns == 1 ? std::max(array.rows, array.columns) : 0;
 }
 
-// A name in small letters, and the unit at its end, in ns; 0: it has none.
-std::pair<std::string, double> name_and_unit(const std::string& path) {
-  std::string name = path.substr(path.rfind('.') + 1);
-  std::ranges::transform(name, name.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  constexpr std::array<std::pair<std::string_view, double>, 8> kUnits{{{"_s", 1e9},
-                                                                       {"_sec", 1e9},
-                                                                       {"_ms", 1e6},
-                                                                       {"_msec", 1e6},
-                                                                       {"_us", 1e3},
-                                                                       {"_usec", 1e3},
-                                                                       {"_ns", 1.0},
-                                                                       {"_nsec", 1.0}}};
-  for (const auto& [end, unit_ns] : kUnits) {
-    if (name.ends_with(end) && name.size() > end.size()) {
-      return {name.substr(0, name.size() - end.size()), unit_ns};
-    }
-  }
-  return {name, 0.0};
-}
-
 // How good a name it is for times, 0 the best; none: no name for them.
 std::optional<std::size_t> rank_of(const std::string& path) {
   constexpr std::array<std::string_view, 11> kNames{"t",      "time",      "tout",       "stamp",
                                                     "stamps", "timestamp", "timestamps", "times",
                                                     "tt",     "seconds",   "sec"};
-  const std::string name = name_and_unit(path).first;
+  const std::string name = without_time_unit(path.substr(path.rfind('.') + 1));
   if (const auto* const found = std::ranges::find(kNames, name); found != kNames.end()) {
     return static_cast<std::size_t>(found - kNames.begin());
   }
@@ -73,30 +52,13 @@ bool never_falls(const std::vector<double>& values) {
   return std::ranges::is_sorted(values) && values.front() < values.back();
 }
 
-// What its numbers count, in ns.
-double unit_of(const MatArray& array) {
-  constexpr std::array<std::pair<double, double>, 3> kSince1970{
-      {{1e17, 1.0}, {1e14, 1e3}, {1e11, 1e6}}};
-  if (const double unit_ns = name_and_unit(array.path).second; unit_ns > 0.0) {
-    return unit_ns;
-  }
-  const double last = array.values.back();
-  const auto* const found =
-      std::ranges::find_if(kSince1970, [&](const auto& one) { return last > one.first; });
-  return found == kSince1970.end() ? 1e9 : found->second;
-}
-
-// Days since the year 0, as datenum has them: nobody samples faster than each 20 µs for days.
-bool is_datenum(const MatArray& array) {
-  const auto steps = static_cast<double>(array.values.size() - 1);
-  return array.values.front() > kTuning.first_datenum &&
-         array.values.back() < kTuning.last_datenum &&
-         (array.values.back() - array.values.front()) / steps < kTuning.longest_datenum_step;
-}
-
-double seconds_of(const MatArray& array, double value) {
-  constexpr double kDaysBefore1970 = 719'529.0;
-  return is_datenum(array) ? (value - kDaysBefore1970) * 86'400.0 : value * unit_of(array) / 1e9;
+// Days tell themselves by their steps; of all else the name says more than the size.
+StampUnit unit_of(const MatArray& array) {
+  const auto by_size =
+      unit_by_size(array.values.front(), array.values.back(), array.values.size() - 1);
+  const auto by_name = unit_in_name(array.path);
+  return by_size && (by_size->zero != 0.0 || !by_name) ? *by_size
+                                                       : by_name.value_or(StampUnit{"s"});
 }
 
 // Puts the topics of a file together.
@@ -202,8 +164,9 @@ class TopicFinder {
   void make_timed_topics() {
     double first_s = 0.0;
     for (const Clock& clock : clocks_) {
+      const StampUnit unit = unit_of(*clock.times);
       for (const double value : clock.times->values) {
-        first_s = std::min(first_s, std::isfinite(value) ? seconds_of(*clock.times, value) : 0.0);
+        first_s = std::min(first_s, std::isfinite(value) ? unit.seconds_of(value) : 0.0);
       }
     }
     for (Clock& clock : clocks_) {
@@ -214,8 +177,9 @@ class TopicFinder {
       MatTopic& topic = add_topic(is_alone ? clock.scope : clock.times->path, clock.scope,
                                   std::move(clock.columns));
       topic.has_time = true;
+      const StampUnit unit = unit_of(*clock.times);
       for (const double value : clock.times->values) {
-        const double time_ns = (seconds_of(*clock.times, value) - first_s) * 1e9;
+        const double time_ns = (unit.seconds_of(value) - first_s) * 1e9;
         const bool is_time = time_ns >= 0.0 && time_ns <= static_cast<double>(Message::kLatestNs);
         topic.times_ns.push_back(is_time ? std::llround(time_ns) : MatTopic::kNoTime);
       }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 
 #include "core/text.hpp"
 #include "file/content.hpp"
@@ -20,29 +19,27 @@ class MetadataFile {
  public:
   explicit MetadataFile(std::string file) : file_(std::move(file)) {}
 
-  BagMetadata read() const {
+  std::vector<std::string> read() const {
     const YAML::Node root = load();
     const YAML::Node bag = root.IsMap() ? root["rosbag2_bagfile_information"] : YAML::Node();
     if (!bag.IsDefined() || !bag.IsMap()) {
       refuse({}, "rosbag2_bagfile_information", "is missing; rosbag2 writes it");
     }
-    BagMetadata metadata;
-    metadata.storage = text(bag, "storage_identifier");
-    check_storage(bag["storage_identifier"], metadata.storage);
+    check_storage(bag["storage_identifier"], text(bag, "storage_identifier"));
     check_compression(bag);
     const YAML::Node files = bag["relative_file_paths"];
     if (!files.IsDefined() || !files.IsSequence() || files.size() == 0) {
       refuse(bag.Mark(), "relative_file_paths", "a list of files is due");
     }
-    std::set<std::string> known;
+    std::vector<std::string> names;
     for (const YAML::Node& node : files) {
-      metadata.files.push_back(file_name(node));
-      if (!known.insert(metadata.files.back()).second) {
-        refuse(node.Mark(), "relative_file_paths",
-               "'" + metadata.files.back() + "' stands here twice");
+      std::string name = file_name(node);
+      if (std::ranges::find(names, name) != names.end()) {
+        refuse(node.Mark(), "relative_file_paths", "'" + name + "' stands here twice");
       }
+      names.push_back(std::move(name));
     }
-    return metadata;
+    return names;
   }
 
  private:
@@ -69,9 +66,10 @@ class MetadataFile {
     return value.Scalar();
   }
 
+  // `ros2 bag reindex` leaves it empty; files are told apart by their content.
   void check_storage(const YAML::Node& node, const std::string& storage) const {
     const std::array<std::string, 2> known{"sqlite3", "mcap"};
-    if (std::ranges::find(known, storage) == known.end()) {
+    if (!storage.empty() && std::ranges::find(known, storage) == known.end()) {
       refuse(node.Mark(), "storage_identifier",
              "the storage '" + storage + "' is unknown" + did_you_mean(storage, known) +
                  "; sqlite3 and mcap are read");
@@ -91,10 +89,10 @@ class MetadataFile {
   std::string file_name(const YAML::Node& node) const {
     const std::filesystem::path name = node.IsScalar() ? node.Scalar() : "";
     const bool is_outside = name.is_absolute() || std::ranges::find(name, "..") != name.end();
-    if (name.empty() || is_outside) {
-      refuse(node.Mark(), "relative_file_paths", "a file within the bag's folder is due");
+    if (!name.has_filename() || name.filename() == "..") {
+      refuse(node.Mark(), "relative_file_paths", "the name of a file is due");
     }
-    return name.lexically_normal().string();
+    return (is_outside ? name.filename() : name.lexically_normal()).string();
   }
 
   std::string file_;
@@ -102,7 +100,7 @@ class MetadataFile {
 
 }  // namespace
 
-BagMetadata read_metadata(const std::filesystem::path& file) {
+std::vector<std::string> read_metadata(const std::filesystem::path& file) {
   return MetadataFile(file.string()).read();
 }
 

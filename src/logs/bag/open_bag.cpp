@@ -172,13 +172,26 @@ class FolderReader final : public MessageReader {
              "is missing; rosbag2 writes it when recording ends (`ros2 bag reindex` "
              "makes it again; --recover does without)");
     }
-    for (const std::string& name : read_metadata(metadata).files) {
+    const std::vector<std::string> names = read_metadata(metadata);
+    for (const fs::path name : names) {
+      // Until Foxy rosbag2 wrote paths from the folder above.
       if (is_there(folder / name)) {
         files_.push_back(folder / name);
-      } else {
+      } else if (is_there(folder / name.filename())) {
+        files_.push_back(folder / name.filename());
+      } else if (names.size() > 1 || !find_renamed(folder)) {
         lose(InputError({.file = (folder / name).string()}, "is missing; metadata.yaml lists it"));
       }
     }
+  }
+
+  // The folder's only file, in place of the only one that is listed.
+  bool find_renamed(const fs::path& folder) {
+    find_files(folder);
+    if (files_.size() != 1) {
+      files_.clear();
+    }
+    return !files_.empty();
   }
 
   void find_files(const fs::path& folder) {

@@ -38,7 +38,9 @@ inline constexpr struct Tuning {
   std::int64_t between_logs_ns = 60'000'000'000;    ///< between two logs in a .BIN file; by hand
   double first_datenum = 7.0e5;                     ///< days: year 1916; by hand
   double last_datenum = 8.0e5;                      ///< days: year 2190; by hand
-  double longest_datenum_step = 2e-5;  ///< days per row (1.7 s): slower rows are not days; by hand
+  double first_day = 3.2e4;                         ///< of a spreadsheet: year 1987; by hand
+  double last_day = 7.3e4;                          ///< year 2099; by hand
+  double longest_day_step = 2e-5;  ///< days per row (1.7 s): slower rows are not days; by hand
 
   // Noise of a field (Statistics).
   std::size_t kept_differences = 512;  ///< memory of 4 kB per number; by hand

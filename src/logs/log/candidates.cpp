@@ -51,7 +51,7 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
     words.pop_back();
   }
   const std::string whole = join_text(words, "_");
-  if (whole == "az") {  // beside ax and ay an acceleration
+  if (!why_no_command(column.name).empty()) {
     return std::nullopt;
   }
   NamedCommand command;
@@ -63,9 +63,6 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
     is_one = true;
   };
   for (const std::string& word : words) {
-    if (std::ranges::find(known_other_words(), word) != known_other_words().end()) {
-      return std::nullopt;
-    }
     bool is_known = false;
     for (const KnownWord& known : known_command_words()) {
       if (const std::optional<std::string> rest = rest_of(known.word, word); rest && !is_known) {
@@ -86,6 +83,12 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
       meet(known);
       command.tail = whole;
     }
+  }
+  if (words.size() > 1 && words.front() == "c" && !pose_part_by_name(column.name)) {
+    meet({.word = "c",
+          .kind = KnownWord::Kind::thrust,
+          .rank = 1,
+          .why = "c_ of a glider: commanded"});
   }
   return is_one ? std::optional(command) : std::nullopt;
 }
@@ -176,11 +179,6 @@ std::vector<Candidate> named_commands(const std::vector<CandidateColumn>& column
     home->what = names_text(home->columns);
   }
   return found;
-}
-
-std::string short_type(std::string type) {
-  const std::size_t msg = type.find("/msg/");
-  return msg == std::string::npos ? type : type.replace(msg, 5, "/");
 }
 
 std::string lower(std::string text) {
@@ -408,6 +406,11 @@ class Finder {
 };
 
 }  // namespace
+
+std::string short_type(std::string type) {
+  const std::size_t msg = type.find("/msg/");
+  return msg == std::string::npos ? type : type.replace(msg, 5, "/");
+}
 
 std::string toml_text(std::string_view name) {
   std::string literal = "\"";

@@ -47,6 +47,9 @@ std::vector<Candidate> find_candidates(const bag::BagReport& report);
 /// Whether a name is UTF-8 without control characters.
 bool can_be_written(std::string_view name);
 
+/// "nav_msgs/Odometry" of "nav_msgs/msg/Odometry".
+std::string short_type(std::string type);
+
 /// The name as a text of TOML. Requires can_be_written().
 std::string toml_text(std::string_view name);
 

@@ -69,7 +69,9 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-// Cuts lines into cells.
+constexpr std::string_view kBlanks = " \t";
+
+// Cuts lines into cells. A separator ' ' stands for any number of blanks and tabs.
 class CellCutter {
  public:
   CellCutter(std::string source, char separator)
@@ -83,13 +85,17 @@ class CellCutter {
     cells_.clear();
     unquoted_.clear();
     unquoted_.reserve(line.size());  // views into it have to stay valid
+    line = separator_ == ' ' ? trimmed(line) : line;
     for (std::size_t first = 0; first <= line.size();) {
+      first += separator_ == ' '
+                   ? std::min(line.substr(first).find_first_not_of(kBlanks), line.size() - first)
+                   : 0;
       const std::string_view rest = line.substr(first);
       const std::size_t start = rest.find_first_not_of(' ');
       if (start != std::string_view::npos && rest[start] == '"') {
         first += cut_quoted(rest, start, number);
       } else {
-        const std::size_t length = std::min(rest.find(separator_), rest.size());
+        const std::size_t length = end_of_cell(rest);
         cells_.push_back(trimmed(rest.substr(0, length)));
         first += length + 1;
       }
@@ -98,6 +104,11 @@ class CellCutter {
   }
 
  private:
+  std::size_t end_of_cell(std::string_view rest) const {
+    const std::size_t end = separator_ == ' ' ? rest.find_first_of(kBlanks) : rest.find(separator_);
+    return std::min(end, rest.size());
+  }
+
   // Returns the length of the cell with its separator.
   std::size_t cut_quoted(std::string_view rest, std::size_t quote, std::size_t number) {
     const std::size_t begin = unquoted_.size();
@@ -109,8 +120,9 @@ class CellCutter {
     if (i >= rest.size()) {
       refuse_csv(source_, number, "a quote is opened but not closed on this line");
     }
-    const std::size_t after = std::min(rest.find_first_not_of(' ', i + 1), rest.size());
-    if (after < rest.size() && rest[after] != separator_) {
+    const std::size_t after =
+        separator_ == ' ' ? i + 1 : std::min(rest.find_first_not_of(' ', i + 1), rest.size());
+    if (after < rest.size() && end_of_cell(rest.substr(after)) > 0) {
       refuse_csv(
           source_, number,
           fmt::format("after a closing quote the next '{}' is due; a quote within a quoted cell "
@@ -127,7 +139,7 @@ class CellCutter {
   std::string unquoted_;
 };
 
-// Comma, semicolon or tab: the most frequent in the header, outside of quotes.
+// Comma, semicolon or tab: the most frequent in the line, outside of quotes; without any the blank.
 char separator_of(std::string_view header) {
   constexpr std::array<char, 3> kSeparators{',', ';', '\t'};
   std::array<std::size_t, kSeparators.size()> counts{};
@@ -138,7 +150,8 @@ char separator_of(std::string_view header) {
       counts[k] += letter == kSeparators[k] ? 1 : 0;
     }
   }
-  return kSeparators[static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin())];
+  const auto most = std::ranges::max_element(counts);
+  return *most == 0 ? ' ' : kSeparators[static_cast<std::size_t>(most - counts.begin())];
 }
 
 struct NameAndUnit {
@@ -188,31 +201,18 @@ NameAndUnit name_and_unit(std::string_view cell) {
   return {std::string(cell), ""};
 }
 
-bool are_stamps(const Table::Text& text, std::vector<std::int64_t>& times_ns, Table::Text& other) {
-  for (const auto& [row, word] : text.words) {
-    const std::optional<std::int64_t> time_ns = parse_stamp(word);
-    if (!time_ns) {
-      other.cell = printable(word, kShownLetters);
-      other.line = row;
-      return false;
-    }
-    times_ns.push_back(*time_ns);
-  }
-  return !times_ns.empty();
-}
-
-// Of a column that begins with a stamp but goes on otherwise, that is what is wrong with it.
+// Of a column that begins with a time but goes on otherwise, that is what is wrong with it.
 void read_stamps(Table& table, std::size_t column) {
   Table::Text& text = table.texts[column];
   std::vector<double>& values = table.columns[column];
-  std::vector<std::int64_t> times_ns;
-  Table::Text other;
+  std::vector<std::int64_t> times_ns = times_of_words(text.words);
   const bool has_numbers =
       std::ranges::any_of(values, [](double value) { return std::isfinite(value); });
-  if (!are_stamps(text, times_ns, other) || has_numbers) {
-    if (!times_ns.empty() && !other.cell.empty()) {
-      text.line = table.lines[other.line];
-      text.cell = other.cell;
+  if (times_ns.size() < text.words.size() || has_numbers) {
+    if (!times_ns.empty() && !has_numbers) {
+      const auto& [row, word] = text.words[times_ns.size()];
+      text.line = table.lines[row];
+      text.cell = printable(word, kShownLetters);
     }
     return;
   }
@@ -253,11 +253,6 @@ void finish_first_column(Table& table, std::size_t header_line) {
 // Takes the column names from the header: "u [m/s]" or "u (m/s)" is the column u with this unit if
 // no other column has the name. The first column may lack a name until finish_columns().
 void name_columns(Table& table, std::span<const std::string_view> cells, std::size_t line) {
-  double number = 0.0;
-  if (std::ranges::all_of(cells, [&](auto cell) { return parse_number(cell, number); })) {
-    refuse_csv(table.source, line,
-               "the first line holds only numbers; it has to name the columns, as in u,v,r");
-  }
   if (cells.size() > kTuning.most_columns) {
     refuse_csv(table.source, line,
                fmt::format("{} columns; at most {} are read", cells.size(), kTuning.most_columns));
@@ -326,11 +321,21 @@ void finish_columns(Table& table, std::size_t header_line) {
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 void check_is_text(std::string_view content, const std::string& source) {
-  if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF")) {
-    refuse_csv(source, 0, "is UTF-16; save it as UTF-8");
-  }
-  if (content.starts_with("PK\x03\x04")) {
-    refuse_csv(source, 0, "is a spreadsheet or a zip file; save the table as CSV");
+  constexpr std::array<std::pair<std::string_view, const char*>, 10> kOthers{
+      {{"\xFF\xFE", "is UTF-16; save it as UTF-8"},
+       {"\xFE\xFF", "is UTF-16; save it as UTF-8"},
+       {"PK\x03\x04", "is a spreadsheet or a zip file; save the table as CSV"},
+       {"\xFF\xD8\xFF", "is a picture (JPEG), no log"},
+       {"\x89PNG", "is a picture (PNG), no log"},
+       {"%PDF", "is a document (PDF); save the table as CSV"},
+       {"<!", "is HTML or XML, as a page saved from the web; save the table as CSV"},
+       {"<html", "is HTML, as a page saved from the web; save the table as CSV"},
+       {"<?xml", "is XML; save the table as CSV"},
+       {"{", "is JSON, no table; a model of `kelpie learn` is taken by --model or --from"}}};
+  for (const auto& [beginning, what] : kOthers) {
+    if (content.starts_with(beginning)) {
+      refuse_csv(source, 0, what);
+    }
   }
   if (const std::size_t nul = content.find('\0'); nul != std::string_view::npos) {
     const auto line = 1 + std::ranges::count(content.substr(0, nul), '\n');
@@ -348,46 +353,141 @@ class TableBuilder {
 
   void add(std::string_view line, std::size_t number) {
     const std::string_view content = trimmed(line);
-    if (content.empty() || content.starts_with('#')) {
+    const bool is_comment =
+        content.starts_with('#') || content.starts_with("% ") || content.starts_with("%%");
+    if (content.empty() || is_comment) {
+      if (is_comment && header_.text.empty()) {
+        const std::size_t marks = content.find_first_not_of("#%");
+        comment_ = {std::string(content.substr(std::min(marks, content.size()))), number};
+      }
       return;
     }
-    if (!has_separator_) {
+    if (content.size() == 5 && content.starts_with("sep=") && header_.text.empty()) {  // by Excel
+      cutter_ = CellCutter(table_.source, content.back());
       has_separator_ = true;
-      const bool is_named = content.size() == 5 && content.starts_with("sep=");  // by Excel
-      cutter_ = CellCutter(table_.source, is_named ? content.back() : separator_of(line));
-      if (is_named) {
-        return;
-      }
+      return;
+    }
+    if (header_.text.empty() && !take_comment(line, number)) {
+      header_ = {std::string(line), number};
+      return;
+    }
+    if (table_.names.empty()) {
+      take_header(line);
     }
     const std::span<const std::string_view> cells = cutter_.cut(line, number);
-    if (table_.names.empty()) {
-      name_columns(table_, cells, number);
-      header_line_ = number;
-    } else if (table_.rows() == 0 && !has_units_row_ && take_units(table_, cells)) {
+    if (table_.rows() == 0 && !has_units_row_ && take_units(table_, cells)) {
       has_units_row_ = true;
     } else {
-      add_row(cells, number);
+      add_row(cells, line, number);
     }
   }
 
   Table finished() {
-    if (table_.names.empty()) {
+    if (header_.text.empty()) {
       refuse_csv(table_.source, 0,
                  "is empty; a header line that names the columns and rows of numbers are due");
+    }
+    if (table_.names.empty()) {
+      take_header("");
     }
     if (table_.rows() == 0) {
       refuse_csv(table_.source, 0, "has a header but no rows");
     }
-    finish_columns(table_, header_line_);
+    finish_columns(table_, header_.number);
     return std::move(table_);
   }
 
  private:
-  void add_row(std::span<const std::string_view> cells, std::size_t line) {
-    if (cells.size() != table_.names.size()) {
+  struct Line {
+    std::string text;
+    std::size_t number = 0;
+  };
+
+  static bool is_number(std::string_view cell) {
+    double number = 0.0;
+    return parse_number(cell, number);
+  }
+
+  // The first line that is no comment may be a row below a comment with the names, as
+  // numpy.savetxt() writes it.
+  bool take_comment(std::string_view line, std::size_t number) {
+    if (!has_separator_) {
+      cutter_ = CellCutter(table_.source, separator_of(line));
+    }
+    const std::span<const std::string_view> cells = cutter_.cut(line, number);
+    const std::size_t count = cells.size();
+    if (std::ranges::none_of(cells, is_number)) {
+      return false;
+    }
+    const bool is_row = std::ranges::all_of(cells, is_number);
+    const bool has_names = !comment_.text.empty() && comment_.text.find('"') == std::string::npos;
+    for (const char separator : {cutter_.separator(), separator_of(comment_.text)}) {
+      if (!has_names) {
+        break;
+      }
+      CellCutter names(table_.source, separator);
+      const std::span<const std::string_view> found = names.cut(comment_.text, comment_.number);
+      if (found.size() == count && std::ranges::none_of(found, is_number)) {
+        header_ = comment_;
+        name_columns(table_, found, header_.number);
+        return true;
+      }
+    }
+    if (is_row) {
+      refuse_csv(table_.source, number,
+                 "the first line holds only numbers; it has to name the columns, as in u,v,r" +
+                     (comment_.text.empty()
+                          ? std::string()
+                          : fmt::format(", or as many as the row has cells ({}) in the comment "
+                                        "above",
+                                        count)));
+    }
+    return false;
+  }
+
+  // A header of words without a separator names one column, unless the row below has as many cells
+  // as the header has words.
+  void take_header(std::string_view row) {
+    if (!has_separator_) {
+      cutter_ = CellCutter(table_.source, separator_of(header_.text));
+    }
+    if (cutter_.separator() == ' ') {
+      const std::size_t words = cutter_.cut(header_.text, header_.number).size();
+      const char own = separator_of(row);
+      if (own != ' ' || words < 2 || cutter_.cut(row, header_.number + 1).size() != words) {
+        cutter_ = CellCutter(table_.source, ',');
+      }
+    }
+    name_columns(table_, cutter_.cut(header_.text, header_.number), header_.number);
+  }
+
+  // What is wrong with a row of another number of cells than the header, as far as it shows.
+  std::string wrong_count_text(std::span<const std::string_view> cells, std::string_view line) {
+    const std::size_t names = table_.names.size();
+    const char own = cutter_.separator();
+    const auto are_digits = [](std::string_view cell) {
+      return cell.find_first_not_of("+-0123456789eE") == std::string_view::npos;
+    };
+    if (const char other = separator_of(line);
+        other != own && names > 1 &&
+        static_cast<std::size_t>(std::ranges::count(line, other)) + 1 == names) {
+      return fmt::format(": they are separated by '{}', those of the header by '{}'", other, own);
+    }
+    return own == ',' && 2 * cells.size() > 3 * names && std::ranges::all_of(cells, are_digits)
+               ? ": decimal commas? Separate cells by ';', or write decimals with a point"
+               : "";
+  }
+
+  void add_row(std::span<const std::string_view> cells, std::string_view text, std::size_t line) {
+    if (text == header_.text) {
       refuse_csv(table_.source, line,
-                 fmt::format("{} cells in this row; the header has {}", cells.size(),
-                             table_.names.size()));
+                 "is the header again: two logs in one file? Give them one by one");
+    }
+    if (cells.size() != table_.names.size()) {
+      const std::size_t count = cells.size();
+      refuse_csv(table_.source, line,
+                 fmt::format("{} cells in this row; the header has {}{}", count,
+                             table_.names.size(), wrong_count_text(cells, text)));
     }
     for (std::size_t column = 0; column < cells.size(); ++column) {
       double value = 0.0;
@@ -453,14 +553,15 @@ class TableBuilder {
   CellCutter cutter_;
   bool has_separator_ = false;
   bool has_units_row_ = false;
-  std::size_t header_line_ = 0;
+  Line header_;
+  Line comment_;  // the last one above the header
   std::size_t words_ = 0;
   std::size_t comma_line_ = 0;  // where the first decimal comma and point stand; 0: nowhere
   std::size_t point_line_ = 0;
 };
 
 std::string quoted_if_needed(std::string_view text) {
-  if (text.find_first_of(",;\t\"# ") == std::string_view::npos) {
+  if (text.find_first_of(",;\t\"#% ") == std::string_view::npos) {
     return std::string(text);
   }
   std::string quoted = "\"";

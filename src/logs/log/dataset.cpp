@@ -19,6 +19,7 @@
 #include "kelpie/core/error.hpp"
 #include "log/csv_time.hpp"
 #include "log/known_roles.hpp"
+#include "log/row_clock.hpp"
 #include "motion/signal_names.hpp"
 
 namespace kelpie::log {
@@ -41,19 +42,6 @@ struct ColumnsInUse {
   std::vector<std::size_t> used;  // all of these
   std::optional<std::size_t> heading;
 };
-
-// A column that would be the time if it could be read.
-std::string unclear_stamp_text(const Table& table) {
-  for (std::size_t column = 0; column < table.texts.size(); ++column) {
-    if (is_unclear_stamp(table.texts[column].cell)) {
-      return fmt::format(
-          "; {} holds '{}', which may have the day or the month first: write time "
-          "stamps as 2023-05-01 12:00:00",
-          table.names[column], table.texts[column].cell);
-    }
-  }
-  return "";
-}
 
 void check_roles(const Table& table, const Roles& roles) {
   if (roles.inputs.empty()) {
@@ -82,7 +70,7 @@ void check_roles(const Table& table, const Roles& roles) {
   if (!has_rate && roles.time.empty()) {
     refuse(table, "time",
            "is unknown; name the time column with --time or give the rows per second with --rate" +
-               unclear_stamp_text(table));
+               unread_time_text(table));
   }
 }
 
@@ -121,61 +109,11 @@ ColumnsInUse find_columns(const Table& table, const Roles& roles) {
   return columns;
 }
 
-// Of a log of several runs: how often its time begins anew within the first second of the first.
-std::size_t starts_anew(const std::vector<double>& times) {
-  constexpr double kNear = 1.0;
-  std::size_t starts = 0;
-  std::optional<double> before;
-  double first = std::numeric_limits<double>::infinity();
-  for (const double now : times) {
-    if (std::isfinite(now)) {
-      first = std::min(first, before ? first : now);
-      starts += before && now < *before - kNear && std::abs(now - first) <= kNear ? 1 : 0;
-      before = now;
-    }
-  }
-  return starts;
-}
-
-// Whether the values go up and down, as those of no clock and of no rows in reverse.
-bool goes_up_and_down(const std::vector<double>& times) {
-  constexpr double kShare = 0.1;  // by hand
-  double up = 0.0;
-  double down = 0.0;
-  for (std::size_t row = 1; row < times.size(); ++row) {
-    up += times[row] > times[row - 1] ? 1.0 : 0.0;
-    down += times[row] < times[row - 1] ? 1.0 : 0.0;
-  }
-  return std::min(up, down) > kShare * (up + down);
-}
-
-std::string order_text(const std::vector<double>& times) {
-  if (const std::size_t starts = starts_anew(times); starts > 1) {
-    return fmt::format(
-        "time begins anew {} times: give each run a file of its own, `kelpie learn "
-        "run1.csv run2.csv …`, or the rows per second by --rate",
-        starts);
-  }
-  return std::string("rows have to be in the order of time") +
-         (goes_up_and_down(times) ? "; is this a column of time? --time names another" : "");
-}
-
 // Looks at the rows to be skipped, too: a clock that jumped there spoils all that follow.
 void check_time(const Table& table, std::size_t column) {
-  std::optional<std::size_t> before;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double now = table.columns[column][row];
-    if (!std::isfinite(now)) {
-      continue;
-    }
-    if (before && now < table.columns[column][*before]) {
-      refuse(table, table.names[column],
-             fmt::format("time runs backwards, from {} (line {}) to {} s; {}",
-                         table.columns[column][*before], table.lines[*before], now,
-                         order_text(table.columns[column])),
-             table.lines[row]);
-    }
-    before = row;
+  std::size_t line = 0;
+  if (const std::string problem = time_order_problem(table, column, 0.0, line); !problem.empty()) {
+    refuse(table, table.names[column], problem, line);
   }
 }
 
@@ -280,21 +218,16 @@ const std::vector<double>& finite_column(const Table& table, const std::string& 
 }
 
 std::vector<double> command_times(const Table& table, const Roles& roles) {
-  std::vector<double> times(table.rows());
   if (roles.rate_hz > 0.0) {
-    for (std::size_t row = 0; row < times.size(); ++row) {
-      times[row] = static_cast<double>(row) / roles.rate_hz;
-    }
-    return times;
+    return row_times_s(table, "", roles.rate_hz);
   }
   const std::string name = usual_time(table, roles);
   if (name.empty()) {
     refuse(table, "time",
            "there is no column t, time or stamp; name one with --time, or give --rate");
   }
-  times = finite_column(table, name);
-  const double unit_s = table.seconds_per_unit(table.find(name));
-  std::ranges::for_each(times, [&](double& time) { time *= unit_s; });
+  finite_column(table, name);
+  const std::vector<double> times = row_times_s(table, name, 0.0);
   const auto later = std::ranges::adjacent_find(times, [](double a, double b) { return b <= a; });
   if (later != times.end()) {
     const auto row = static_cast<std::size_t>(later - times.begin()) + 1;
@@ -436,15 +369,16 @@ void Table::require_numbers(std::size_t column) const {
 }
 
 double Table::seconds_per_unit(std::size_t column) const {
-  constexpr std::array<std::pair<std::string_view, double>, 9> kSeconds{{{"", 1.0},
-                                                                         {"s", 1.0},
-                                                                         {"ms", 1e-3},
-                                                                         {"us", 1e-6},
-                                                                         {"µs", 1e-6},
-                                                                         {"ns", 1e-9},
-                                                                         {"min", 60.0},
-                                                                         {"h", 3600.0},
-                                                                         {"1", 1.0}}};
+  constexpr std::array<std::pair<std::string_view, double>, 10> kSeconds{{{"", 1.0},
+                                                                          {"s", 1.0},
+                                                                          {"ms", 1e-3},
+                                                                          {"us", 1e-6},
+                                                                          {"µs", 1e-6},
+                                                                          {"ns", 1e-9},
+                                                                          {"min", 60.0},
+                                                                          {"h", 3600.0},
+                                                                          {"d", 86'400.0},
+                                                                          {"1", 1.0}}};
   const std::string given = column < units.size() ? units[column] : "";
   const std::string unit = given.empty() ? given : Unit::parse(given).text();
   const auto* const found =

@@ -93,6 +93,13 @@ struct KnownActuator {
   bool operator==(const KnownActuator&) const = default;
 };
 
+/// What cannot be right in a log, or hardly.
+struct Mistake {
+  std::string what;        ///< in words, with the figures that show the mistake
+  std::string remedy;      ///< an option of the command line where an option helps
+  bool is_refused = true;  ///< false: worth a word, but the log can be learned
+};
+
 /// Data for a learner: inputs x, targets y, time t, row by row in time order; all finite.
 struct Dataset {
   std::string source;
@@ -117,6 +124,7 @@ struct Dataset {
   double rate_hz = 0.0;               ///< as given, or 1 / median of the positive time steps
   std::map<std::string, Unit> units;  ///< of columns, as given; for display only
   std::map<std::string, KnownActuator> actuators{};  ///< of inputs, as far as known beforehand
+  std::vector<Mistake> doubts{};  ///< what the rest of the log tells of the rows (check_pose())
 
   std::size_t rows() const { return times_s.size(); }
   /// Inputs of a row, in the order of input_names.
@@ -153,6 +161,9 @@ struct Roles {
   /// Columns of a table that are its poses, by names that tell their part ("x", "psi", "depth":
   /// pose_part_by_name()) or as part=column; empty: none.
   std::vector<std::string> pose{};
+  /// Values that stand for none, as "-999" or "u=0"; "none": every velocity is a measurement, too
+  /// (drop_missing()).
+  std::vector<std::string> missing{};
   bool has_curves = false;  ///< measured states between messages: Interpolation::curve, not lines
 };
 

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/text.hpp"
@@ -10,15 +11,16 @@
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "log/draft_plan.hpp"
+#include "log/pose_check.hpp"
 
 namespace kelpie::log {
 namespace {
 
 // A table whose columns have the usual names needs no sampling: its rows are samples.
-std::optional<DraftPlan> plan_of_ready(const Table& table) {
+std::optional<DraftPlan> plan_of_ready(const Table& table, const Roles& given) {
   Roles roles;
   try {
-    roles = guess_roles(table, {});
+    roles = guess_roles(table, {.time = given.time, .rate_hz = given.rate_hz});
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -26,8 +28,10 @@ std::optional<DraftPlan> plan_of_ready(const Table& table) {
   plan.inputs = roles.inputs;
   plan.targets = roles.targets;
   plan.time = roles.time;
+  plan.rate_hz = roles.rate_hz;
+  plan.rate_why = "as given";
   plan.taken = {"inputs and targets by their names: a target is udot, u_dot or du beside u"};
-  if (plan.time.empty()) {
+  if (plan.time.empty() && plan.rate_hz == 0.0) {
     plan.open.emplace_back(
         "rate: no column is named t, time or stamp; write rate = rows per second");
   }
@@ -72,6 +76,22 @@ std::vector<std::string> undecoded(const bag::BagReport& report) {
   return lines;
 }
 
+// Topics of odometry whose twist lies along the axes of the world, as gazebo's p3d gives it.
+std::set<std::string> topics_of_world(const bag::BagReport& report, const LogSource& source) {
+  std::set<std::string> topics;
+  for (const bag::TopicReport& topic : report.topics) {
+    try {
+      if (short_type(topic.type) == "nav_msgs/Odometry" && topic.not_decoded.empty() &&
+          topic.messages > 0 && !source.path.empty() && is_twist_of_world(source, topic.name)) {
+        topics.insert(topic.name);
+      }
+    } catch (const std::exception&) {  // whoever reads the topic says what is wrong with it
+      continue;
+    }
+  }
+  return topics;
+}
+
 }  // namespace
 
 LogConfig Draft::config(const std::string& source) const {
@@ -103,7 +123,7 @@ std::string Draft::summary(const std::string& source) const {
 }
 
 Draft draft_of(const bag::BagReport& report, const LogSource& source) {
-  DraftPlan plan = plan_draft(report, "");
+  DraftPlan plan = plan_draft(report, {}, topics_of_world(report, source));
   if (!plan.open.empty()) {
     const std::vector<std::string> lines = undecoded(report);
     plan.open.insert(plan.open.end(), lines.begin(), lines.end());
@@ -111,11 +131,12 @@ Draft draft_of(const bag::BagReport& report, const LogSource& source) {
   return written(plan, source.path, source.definitions);
 }
 
-Draft draft_of(const Table& table, const std::string& time) {
-  const std::optional<DraftPlan> ready = plan_of_ready(table);
-  return written(
-      ready ? *ready : plan_draft(inspect_table(table), time.empty() ? time_field(table) : time),
-      table.source, "");
+Draft draft_of(const Table& table, const Roles& given) {
+  if (const std::optional<DraftPlan> ready = plan_of_ready(table, given)) {
+    return written(*ready, table.source, "");
+  }
+  const RowClock clock = row_clock(table, given);
+  return written(plan_draft(inspect_table(table, clock), clock, {}), table.source, "");
 }
 
 }  // namespace kelpie::log

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "log/dataset.hpp"
 #include "log/log_config.hpp"
 #include "log/log_source.hpp"
+#include "log/row_clock.hpp"
 
 namespace kelpie::log {
 
@@ -34,14 +36,19 @@ struct Draft {
 };
 
 /// Content of a table, as the fields of a topic without name.
-bag::BagReport inspect_table(const Table& table);
+bag::BagReport inspect_table(const Table& table, const RowClock& clock);
+
+/// A CSV file, with what is known of its numbers before any role: pulses of disarmed motors
+/// (set_missing_pulses()), the unit of the time (settle_time_unit()). Columns in `given.units` have
+/// no unit but the time, since whoever reads the table converts them. `told`: lines for the user.
+Table read_table(const std::filesystem::path& file, const Roles& given, std::string& told);
 
 /// Drafts a configuration for the log. Never throws because of the log's content: unclear points
 /// become `open`.
 Draft draft_of(const bag::BagReport& report, const LogSource& source);
 /// Drafts a configuration for a table. A table with the usual names (guess_roles) is used directly.
-/// `time`: the column of the time; "": by its name.
-Draft draft_of(const Table& table, const std::string& time = "");
+/// `given`: the time or the rate that the caller knows.
+Draft draft_of(const Table& table, const Roles& given = {});
 
 /// Content of a log, and the draft.
 struct InspectedLog {
@@ -50,8 +57,9 @@ struct InspectedLog {
   std::string losses{};  ///< as Log::losses, for people: a line each
 };
 
-/// Reads the whole log. Throws as bag::open_bag(), bag::inspect_bag() and read_csv() do.
-InspectedLog inspect_log(const LogSource& source);
+/// Reads the whole log; `given` as for tables. Throws as bag::open_bag(), bag::inspect_bag() and
+/// read_csv() do.
+InspectedLog inspect_log(const LogSource& source, const Roles& given = {});
 
 /// The draft alone.
 inline Draft draft_of(const LogSource& source) {

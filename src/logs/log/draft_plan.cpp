@@ -107,62 +107,23 @@ struct SignalRates {
   double commands_hz;  // of the slowest command
 };
 
-// A unit of a table's stamps that count as s, and are not likely to be: by the column's name
-// (time_ms), or because a log in this unit has the rate of usual logs; "": none.
-std::string unit_of_stamps(const bag::TopicReport& table, const std::string& time) {
-  constexpr std::array<std::pair<const char*, double>, 3> kUnits{
-      {{"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}}};
-  constexpr double kSlowest = 0.9;  // rows per second, by hand
-  const auto column = std::ranges::find(table.fields, time, &bag::FieldRange::path);
-  if (column == table.fields.end() || !column->unit.empty()) {
-    return "";
-  }
-  const std::vector<std::string> words = words_of(time);
-  for (const auto& [unit, per_s] : kUnits) {
-    if (!words.empty() && words.back() == unit) {
-      return unit;
-    }
-  }
-  for (const auto& [unit, per_s] : kUnits) {
-    if (table.rate_hz * per_s >= kSlowest) {
-      return unit;
-    }
-  }
-  return "";
-}
-
-// What is wrong with a table's time; "": nothing.
-std::string time_problem(const bag::TopicReport& table, const DraftPlan& plan) {
+void choose_rate(const RowClock& clock, const SignalRates& rates, DraftPlan& plan) {
   constexpr double kSlowestPose = 0.2;  // rows per second, by hand
-  if (plan.time.empty()) {
-    return "time: no column is named t, time, stamp or the like; accelerations take one: --time "
-           "names the column";
-  }
-  const double rate = table.rate_hz;
-  const std::string unit = unit_of_stamps(table, plan.time);
-  const std::string remedy =
-      unit.empty() ? ""
-                   : fmt::format(": --units {}={} says that it is in {}", plan.time, unit, unit);
-  if (rate < 0.01 || rate > 1e5 || (!plan.pose.empty() && rate < kSlowestPose && !unit.empty())) {
-    return fmt::format("time: the column {} gives {:.3g} rows per second, which is hardly in s{}",
-                       plan.time, rate, rate < 1.0 ? remedy : "");
-  }
-  const std::vector<std::string> words = words_of(plan.time);
-  return !unit.empty() && words.back() == unit
-             ? fmt::format("time: by its name the column {} is not in s{}", plan.time, remedy)
-             : "";
-}
-
-void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
-  const std::string problem = plan.is_of_bag ? "" : time_problem(report.topics.front(), plan);
-  if (!problem.empty()) {
-    plan.open.push_back(problem);
+  if (!clock.problem.empty()) {
+    plan.open.push_back(clock.problem);
+  } else if (!plan.pose.empty() && rates.moving_hz < kSlowestPose && !clock.unit.empty()) {
+    plan.open.push_back(fmt::format(
+        "time: the column {0} gives {1:.3g} rows per second, which is hardly in s: --units {0}={2} "
+        "says that it is in {2}",
+        plan.time, rates.moving_hz, clock.unit));
   }
   if (plan.targets.empty()) {
     return;
   }
   if (!(rates.moving_hz > 0.0)) {
-    plan.open.emplace_back("velocities: their times tell no rate");
+    if (clock.problem.empty()) {
+      plan.open.emplace_back("velocities: their times tell no rate");
+    }
     return;
   }
   const double wanted = std::clamp(kTuning.wanted_rows / std::max(rates.duration_s, 1.0),
@@ -172,22 +133,26 @@ void choose_rate(const bag::BagReport& report, const SignalRates& rates, DraftPl
   plan.rate_why = plan.rate_hz < wanted - 1.0            ? "velocities come no faster"
                   : wanted > kTuning.usual_rate_hz + 1.0 ? "the log is short"
                                                          : "enough for a vehicle";
+  if (clock.rate_hz > 0.0) {
+    plan.rate_hz = clock.rate_hz;
+    plan.rate_why = "as given";
+  }
   double slowest = rates.moving_hz;
   for (const CandidateColumn& column : rates.used) {
     slowest = std::min(slowest, column.rate_hz);
   }
   plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
   plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
-  if (problem.empty() && plan.pose.empty() && plan.window_s > stream::kTuning.longest_window_s) {
-    const std::string unit = plan.is_of_bag ? "" : unit_of_stamps(report.topics.front(), plan.time);
+  if (clock.problem.empty() && plan.pose.empty() &&
+      plan.window_s > stream::kTuning.longest_window_s) {
     plan.open.push_back(fmt::format(
         "velocities come every {:.3g} s, too slowly for accelerations, which are slopes over six "
         "samples and {:g} s at most; a column of measured accelerations can be named by "
         "--targets{}",
         1.0 / rates.moving_hz, stream::kTuning.longest_window_s,
-        unit.empty()
+        clock.unit.empty()
             ? ""
-            : fmt::format("; stamps in {} are told by --units {}={}", unit, plan.time, unit)));
+            : fmt::format("; stamps in {0} are told by --units {1}={0}", clock.unit, plan.time)));
   }
 }
 
@@ -240,9 +205,10 @@ void ask_for_row_times(const bag::BagReport& report, const SignalRates& rates, D
 }
 
 // Chooses rate and clock of the rows, and notes slow signals. Requires the plan's targets.
-void plan_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+void plan_times(const bag::BagReport& report, const RowClock& clock, const SignalRates& rates,
+                DraftPlan& plan) {
   ask_for_row_times(report, rates, plan);
-  choose_rate(report, rates, plan);
+  choose_rate(clock, rates, plan);
   choose_clock(rates, plan);
   say_what_is_slow(rates, plan);
 }
@@ -287,12 +253,19 @@ DraftUnit draft_unit(const std::string& given) {
 
 class Planner {
  public:
-  Planner(const bag::BagReport& report, const std::string& time)
+  Planner(const bag::BagReport& report, RowClock clock, const std::set<std::string>& of_world)
       : report_(report),
+        clock_(std::move(clock)),
         all_(find_candidates(report)),
         motors_(motor_outputs(report.autopilot.parameters)),
         is_submarine_(is_submarine(report)) {
-    plan_.time = time;
+    for (Candidate& one : all_) {
+      if (one.part == Part::velocity && of_world.contains(topic_of(one))) {
+        one.frame = "ENU";
+        one.why = "along the axes of the world, as the poses of the same messages show";
+      }
+    }
+    plan_.time = clock_.column;
     plan_.is_of_bag = report.topics.size() != 1 || !report.topics.front().name.empty();
   }
 
@@ -304,6 +277,7 @@ class Planner {
     const std::optional<Candidate> commands = choose(Part::commands, "commands", "");
     if (velocity) {
       take_motion(*velocity, 0);
+      take_validity(topic_of(*velocity));
       turn_velocity(*velocity);
     }
     if (rates) {
@@ -320,7 +294,7 @@ class Planner {
     }
     keep_armed();
     const double duration_s = plan_.armed_only ? report_.autopilot.armed_s : report_.duration_s;
-    plan_times(report_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, plan_);
+    plan_times(report_, clock_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, plan_);
     take_voltage();
     take_heading();
     if (plan_.is_of_bag && (plan_.states.empty() || plan_.commands.empty())) {
@@ -606,6 +580,22 @@ class Planner {
                         std::move(group));
   }
 
+  // What the velocity's message says of itself, where that is not always good.
+  void take_validity(const std::string& name) {
+    const auto topic = std::ranges::find(report_.topics, name, &bag::TopicReport::name);
+    const auto known = validity_of_message(short_type(topic->type));
+    const auto field = !known
+                           ? topic->fields.end()
+                           : std::ranges::find(topic->fields, known->first, &bag::FieldRange::path);
+    if (field == topic->fields.end() || field->low >= known->second || !can_be_written(name)) {
+      return;
+    }
+    const std::string least = fmt::format("{:g}", known->second);
+    plan_.valid.push_back({name + ":" + known->first, least,
+                           fmt::format("{:g} to {:g} in this log", field->low, field->high)});
+    plan_.taken.push_back(fmt::format("velocities where {} is {} or more", known->first, least));
+  }
+
   // The attitude of the world `frame`, of `topic` before all others; or null.
   const Candidate* attitude_of(const std::string& frame, const std::string& topic) const {
     const Candidate* best = nullptr;
@@ -782,6 +772,7 @@ class Planner {
   }
 
   const bag::BagReport& report_;
+  RowClock clock_;
   std::vector<Candidate> all_;
   std::vector<MotorActuator> motors_;
   bool is_submarine_;  // roll and pitch are learned, too
@@ -798,8 +789,9 @@ class Planner {
 
 }  // namespace
 
-DraftPlan plan_draft(const bag::BagReport& report, const std::string& time) {
-  return Planner(report, time).run();
+DraftPlan plan_draft(const bag::BagReport& report, RowClock clock,
+                     const std::set<std::string>& of_world) {
+  return Planner(report, std::move(clock), of_world).run();
 }
 
 }  // namespace kelpie::log

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
 #include "bag/series.hpp"
 #include "log/candidates.hpp"
 #include "log/dataset.hpp"
+#include "log/row_clock.hpp"
 
 namespace kelpie::log {
 
@@ -41,6 +43,7 @@ struct DraftPlan {
   std::vector<Group> commands{};
   std::vector<Line> neutrals{};  ///< `from` is the command at rest
   std::vector<Line> scales{};    ///< `from` is the factor, in the syntax of [log.scale]
+  std::vector<Line> valid{};  ///< `name` is the column, `from` the least value of a valid message
   bool armed_only = false;
   std::vector<Line> derived{};  ///< `from` is the differentiated column
   /// Fields of the log that change, where no velocities or no commands are known; without `name`.
@@ -51,14 +54,13 @@ struct DraftPlan {
   std::vector<std::string> open{};     ///< Draft::open
 };
 
-/// Chooses the signals by rank. `time` is a table's column of time, or "".
-DraftPlan plan_draft(const bag::BagReport& report, const std::string& time);
+/// Chooses the signals by rank. `clock`: of a table; `of_world`: topics of odometry whose twist
+/// lies along the axes of the world.
+DraftPlan plan_draft(const bag::BagReport& report, RowClock clock,
+                     const std::set<std::string>& of_world);
 
 /// Formats the file. `log` is the name of the log, `definitions` the folder of .msg files or "".
 std::string draft_text(const DraftPlan& plan, const std::string& log,
                        const std::string& definitions);
-
-/// The time column of a table to be sampled, by any known name or by time stamps; or "".
-std::string time_field(const Table& table);
 
 }  // namespace kelpie::log

@@ -2,7 +2,6 @@
 #include "log/draft_pose.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -12,23 +11,14 @@ namespace {
 
 // The parts of a pose that one topic, or a table, has by name.
 PoseColumns pose_of(const bag::TopicReport& topic) {
-  constexpr std::array<std::string_view, 14> kOther{
-      "cmd",   "command", "desired",  "ref",   "target", "setpoint", "rate",
-      "speed", "vel",     "velocity", "accel", "true",   "error",    "covariance"};
   PoseColumns parts;
   const auto is_plain = [](const std::string& name) {
     return can_be_written(name) && name.find_first_of("\"\\") == std::string::npos;
   };
   for (const bag::FieldRange& field : topic.fields) {
-    const std::vector<std::string> words = words_of(field.path);
-    const bool is_other = std::ranges::any_of(words, [&](const std::string& word) {
-      return std::ranges::find(kOther, word) != kOther.end();
-    });
-    const std::optional<std::string> part = is_other || field.finite == 0 ||
-                                                    !field.elements.empty() ||
-                                                    !is_plain(field.path) || !is_plain(topic.name)
-                                                ? std::nullopt
-                                                : pose_part_by_name(field.path);
+    const bool is_one =
+        field.finite > 0 && field.elements.empty() && is_plain(field.path) && is_plain(topic.name);
+    const auto part = is_one ? measured_pose_part(field.path) : std::nullopt;
     if (part) {
       parts.try_emplace(*part, column_of(topic, field));
     }

@@ -145,6 +145,12 @@ std::string draft_text(const DraftPlan& plan, const std::string& log,
       text += fmt::format("{} = {}  # {}\n", line.name, line.from, line.why);
     }
   }
+  if (!plan.valid.empty()) {
+    text += "\n[log.valid]  # velocities count where the field is at least so large\n";
+    for (const DraftPlan::Line& line : plan.valid) {
+      text += fmt::format("{} = {}  # {}\n", toml_text(line.name), line.from, line.why);
+    }
+  }
   if (!plan.neutrals.empty()) {
     text += "\n[log.actuators]  # commands at rest\n";
     for (const DraftPlan::Line& line : plan.neutrals) {

@@ -10,6 +10,7 @@
 #include "log/dataset.hpp"
 #include "log/draft.hpp"
 #include "log/draft_plan.hpp"
+#include "log/validity.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -36,38 +37,7 @@ void measure_times(const std::vector<double>& times, double unit_s, bag::TopicRe
 
 }  // namespace
 
-std::string time_field(const Table& table) {
-  std::string found;
-  std::size_t best = std::numeric_limits<std::size_t>::max();
-  const auto try_name = [&](std::size_t column, const std::string& name, const auto& names,
-                            std::size_t first) {
-    const auto place = std::ranges::find(names, name) - std::ranges::begin(names);
-    const std::size_t rank = first + static_cast<std::size_t>(place);
-    if (static_cast<std::size_t>(place) < std::ranges::size(names) && rank < best) {
-      best = rank;
-      found = table.names[column];
-    }
-  };
-  const std::size_t words = kTimeNames.size();
-  const std::size_t others = 2 * words;
-  const std::size_t stamps = others + known_times().size();
-  for (std::size_t column = 0; column < table.names.size(); ++column) {
-    if (table.is_of_words(column)) {
-      continue;
-    }
-    try_name(column, table.names[column], kTimeNames, 0);
-    const std::string name = join_text(words_of(table.names[column]), "_");
-    try_name(column, name, kTimeNames, words);
-    try_name(column, name, known_times(), others);
-    if (table.is_time(column) && stamps < best) {
-      best = stamps;
-      found = table.names[column];
-    }
-  }
-  return found;
-}
-
-bag::BagReport inspect_table(const Table& table) {
+bag::BagReport inspect_table(const Table& table, const RowClock& clock) {
   bag::BagReport report;
   report.messages = table.rows();
   bag::TopicReport& topic = report.topics.emplace_back();
@@ -89,21 +59,42 @@ bag::BagReport inspect_table(const Table& table) {
                             .unit = column < table.units.size() ? table.units[column] : "",
                             .noise = statistics.noise()});
   }
-  if (const std::string name = time_field(table); !name.empty()) {
-    const std::size_t time = table.find(name);
+  if (clock.rate_hz > 0.0 && clock.column.empty()) {
+    topic.rate_hz = clock.rate_hz;
+    report.duration_s = static_cast<double>(table.rows() - 1) / clock.rate_hz;
+  } else if (!clock.column.empty()) {
+    const std::size_t time = table.find(clock.column);
     const double unit_s = table.seconds_per_unit(time);
     measure_times(table.columns[time], unit_s, topic);
-    const auto field = std::ranges::find(topic.fields, name, &bag::FieldRange::path);
+    const auto field = std::ranges::find(topic.fields, clock.column, &bag::FieldRange::path);
     report.duration_s = field->finite > 0 ? unit_s * (field->high - field->low) : 0.0;
   }
   return report;
 }
 
-InspectedLog inspect_log(const LogSource& source) {
+Table read_table(const std::filesystem::path& file, const Roles& given, std::string& told) {
+  Table table = read_csv(file);
+  told += drop_missing(table, given);
+  told += set_missing_pulses(table);
+  told += settle_time_unit(table, given);
+  const std::string time = row_clock(table, given).column;
+  table.units.resize(table.names.size());
+  for (const auto& [name, text] : given.units) {
+    if (const auto found = std::ranges::find(table.names, name); found != table.names.end()) {
+      table.units[static_cast<std::size_t>(found - table.names.begin())] =
+          name == time ? text : std::string();
+    }
+  }
+  return table;
+}
+
+InspectedLog inspect_log(const LogSource& source, const Roles& given) {
   if (!bag::is_bag(source.path)) {
-    Table table = read_csv(source.path);
-    std::string missing = set_missing_pulses(table);
-    return {.report = inspect_table(table), .draft = draft_of(table), .losses = std::move(missing)};
+    std::string told;
+    const Table table = read_table(source.path, given, told);
+    return {.report = inspect_table(table, row_clock(table, given)),
+            .draft = draft_of(table, given),
+            .losses = std::move(told)};
   }
   const bag::MessageDefinitions definitions(source.definitions);
   const std::unique_ptr<bag::MessageReader> bag = source.open_bag();

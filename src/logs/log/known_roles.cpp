@@ -118,11 +118,13 @@ struct CommandWords {
   KnownWord::Kind kind;
   int rank;
   std::string_view why = {};
+  bool is_weak = false;
 };
 constexpr std::array kCommandWords = std::to_array<CommandWords>({
     {"thruster# thrusters thrust# thr# motor# motors rpm# rps# pwm# servo# prop# propeller# "
-     "throttle# esc# actuator# actuators th# n# m# cmd# command# commands control#",
+     "throttle# esc# actuator# actuators th# n# m#",
      Kind::thrust, 1},
+    {"cmd# command# commands control#", Kind::thrust, 1, {}, true},
     {"tau# taux tauy taun", Kind::wrench, 2},
     {"rudder# fin# fins elevator# delta# azimuth# az# steering# helm# tiller# wheel#", Kind::angle,
      1},
@@ -130,12 +132,63 @@ constexpr std::array kCommandWords = std::to_array<CommandWords>({
     {"u_heading", Kind::angle, 1, kLetters},
 });
 
-constexpr std::array kOtherWords = std::to_array<std::string_view>(
-    {"time",  "stamp",   "timestamp",  "secs",        "nsecs", "sec",     "nanosec",
-     "seq",   "current", "voltage",    "temperature", "temp",  "battery", "covariance",
-     "mode",  "error",   "err",        "limit",       "min",   "max",     "status_code",
-     "fault", "armed",   "enabled",    "id",          "index", "count",   "true",
-     "power", "sats",    "satellites", "imu"});
+// Names that are no commands. In small letters; "#" stands for digits.
+struct OtherName {
+  enum class Where { whole, word, last, command };  // command: a word that excludes commands alone
+  Where where;
+  std::string_view names;
+  std::string_view why;
+};
+using Where = OtherName::Where;
+constexpr std::string_view kMeasurement = "a measurement, no command; --inputs takes it";
+constexpr std::string_view kAcceleration = "an acceleration; --inputs takes it";
+constexpr std::string_view kDemand = "a demand to a controller, no command; --inputs takes it";
+constexpr std::array kOtherNames = std::to_array<OtherName>({
+    {Where::whole, "run index idx row seq count frame window trial sample iteration", "a counter"},
+    {Where::last, "step", "a counter"},
+    // What somebody knows of a row, and the vehicle does not.
+    {Where::whole,
+     "held held_out fold label condition fault faults class phase mission mode scenario",
+     "a label"},
+    {Where::last, "state mode", "a label"},
+    // Where or when, which no dynamics depend on.
+    {Where::whole,
+     "depth lat lon latitude longitude altitude px py pz north east down easting northing pos_x "
+     "pos_y pos_z",
+     "a position"},
+    // Of the angles heading alone is without effect: roll and pitch restore.
+    {Where::whole, "heading psi yaw hdg cog course yaw_deg compass", "a heading"},
+    {Where::whole, "volt volts voltage voltage_v current_a amps", "of a battery"},
+    {Where::word, "battery batt soc vbat", "of a battery"},
+    {Where::whole, "ax ay az accx accy accz", kAcceleration},
+    {Where::last, "mps2 ms2", kAcceleration},
+    {Where::whole, "power_w sog", kMeasurement},
+    {Where::word,
+     "imu temp temps temperature# sat sats nsats satellites humidity rssi snr gain gains sigma "
+     "vacuum leak cpu hdop pdop vdop salinity conductivity turbidity",
+     kMeasurement},
+    {Where::word, "reference# setpoint# desired wanted ref#", kDemand},
+    {Where::command,
+     "time stamp timestamp secs nsecs sec nanosec seq current voltage covariance mode error err "
+     "limit min max status_code fault armed enabled id index count true power",
+     "no command by its name"},
+});
+
+// Before the axis of an acceleration.
+constexpr std::array kAccelerationWords =
+    std::to_array<std::string_view>({"acc", "accel", "acceleration"});
+
+constexpr std::array kAffixes = std::to_array<KnownAffix>({
+    {"true truth gt tv", "the true {}, which no vehicle knows"},
+    {"next prev previous last lagged", "{} of another row"},
+    {"act actual measured meas feedback fb", "what {} is measured to be"},
+});
+
+// Words that tell one actuator from another.
+constexpr std::string_view kSides =
+    "left right port starboard stbd sb ps fore aft front back rear bow stern top bottom upper "
+    "lower vertical horizontal vert horiz lateral center centre mid main inner outer fl fr rl rr "
+    "bl br out raw";
 
 constexpr std::array kCommandFields = std::to_array<std::string_view>(
     {"cmd", "command", "input", "data", "value", "speed", "rpm", "rps", "velocity", "omega", "pwm",
@@ -196,10 +249,12 @@ constexpr std::array kPoseWords = std::to_array<PoseWords>({
 });
 
 constexpr std::array kTimes = std::to_array<std::string_view>(
-    {"timestamp",    "time_s",  "t_s",          "times",        "secs",        "seconds",
-     "sec",          "elapsed", "elapsed_time", "elapsed_s",    "time_ms",     "t_ms",
-     "timestamp_ms", "time_us", "t_us",         "timestamp_us", "rosbag_time", "rosbagtimestamp",
-     "clock",        "date",    "datetime",     "unix_time"});
+    {"timestamp",    "time_s",   "t_s",          "times",        "secs",        "seconds",
+     "sec",          "elapsed",  "elapsed_time", "elapsed_s",    "time_ms",     "t_ms",
+     "timestamp_ms", "time_us",  "t_us",         "timestamp_us", "rosbag_time", "rosbagtimestamp",
+     "clock",        "date",     "datetime",     "unix_time",    "epoch",       "utc",
+     "utc_time",     "tow",      "gps_tow",      "gps_time",     "gps_seconds", "m_present_time",
+     "time_boot_ms", "time_usec"});
 
 bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
@@ -207,6 +262,13 @@ bool is_letter(char c) {
 
 bool is_digit(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool is_among_words(std::string_view words, std::string_view word) {
+  const std::string_view stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
+  return std::ranges::any_of(split_text(std::string(words), ' '), [&](const std::string& known) {
+    return word == known || (known.ends_with('#') && known.substr(0, known.size() - 1) == stem);
+  });
 }
 
 // What stands between brackets: "x,y,z", "1..8" or, of an index, "0..3".
@@ -245,7 +307,7 @@ const std::vector<KnownWord>& known_command_words() {
     std::vector<KnownWord> words;
     for (const CommandWords& known : kCommandWords) {
       for (const std::string& word : split_text(known.words, ' ')) {
-        words.push_back({word, known.kind, known.rank, known.why});
+        words.push_back({word, known.kind, known.rank, known.why, known.is_weak});
       }
     }
     return words;
@@ -253,8 +315,8 @@ const std::vector<KnownWord>& known_command_words() {
   return all;
 }
 
-std::span<const std::string_view> known_other_words() {
-  return kOtherWords;
+std::span<const KnownAffix> known_affixes() {
+  return kAffixes;
 }
 
 std::span<const std::string_view> known_command_fields() {
@@ -308,6 +370,122 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
+namespace {
+
+bool is_actuator(const std::string& word) {
+  return std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
+    return !known.is_weak && known.word.size() > 2 && is_among_words(known.word, word);
+  });
+}
+
+// A side, a number, a letter, a field of a thruster's message.
+bool tells_which(const std::string& word) {
+  return is_digit(word) || word.size() == 1 || is_among_words(kSides, word) ||
+         std::ranges::find(kCommandFields, word) != kCommandFields.end();
+}
+
+// The words of the last part of a path that tells more than which actuator or field.
+std::vector<std::string> last_part(std::string_view name) {
+  for (std::string_view rest = name;;) {
+    const std::size_t cut = rest.find_last_of("/:.");
+    std::vector<std::string> words =
+        words_of(cut == std::string_view::npos ? rest : rest.substr(cut + 1));
+    if (cut == std::string_view::npos || !std::ranges::all_of(words, tells_which)) {
+      return words;
+    }
+    rest = rest.substr(0, cut);
+  }
+}
+
+}  // namespace
+
+std::string why_no_input(std::string_view name) {
+  const std::vector<std::string> words = words_of(name);
+  const std::string whole = join_text(words, "_");
+  const auto is_of = [&](const OtherName& known) {
+    const auto is_one = [&](const std::string& word) { return is_among_words(known.names, word); };
+    return known.where == Where::whole  ? is_one(whole)
+           : known.where == Where::word ? std::ranges::any_of(words, is_one)
+           : known.where == Where::last ? words.size() > 1 && is_one(words.back())
+                                        : false;
+  };
+  for (const OtherName& known : kOtherNames) {
+    if (is_of(known) && !(known.why == kDemand && std::ranges::any_of(words, is_actuator))) {
+      return std::string(known.why);
+    }
+  }
+  const bool is_of_axis = words.size() > 1 && words.back().size() == 1 && words.back() >= "x" &&
+                          words.back() <= "z" &&
+                          std::ranges::count(kAccelerationWords, words[words.size() - 2]) > 0;
+  // T_motor, I_motor; m_depth of a Slocum glider, whose m_ stands for measured.
+  const bool is_of_motor =
+      (name.starts_with("T_") || name.starts_with("I_")) && std::ranges::any_of(words, is_actuator);
+  const bool is_of_slocum = words.size() > 1 && words.front() == "m" && !tells_which(words[1]);
+  return std::string(is_of_axis                    ? kAcceleration
+                     : is_of_motor || is_of_slocum ? kMeasurement
+                                                   : std::string_view());
+}
+
+std::string why_no_command(std::string_view name) {
+  if (std::string why = why_no_input(name); !why.empty()) {
+    return why;
+  }
+  const std::vector<std::string> words = words_of(name);
+  const auto excludes = [&](const OtherName& known) {
+    return known.where == Where::command &&
+           std::ranges::any_of(
+               words, [&](const std::string& word) { return is_among_words(known.names, word); });
+  };
+  if (std::ranges::any_of(kOtherNames, excludes)) {
+    return "no command by its name";
+  }
+  std::vector<std::string> last = last_part(name);
+  last.push_back(join_text(last, "_"));  // u_heading
+  const bool is_of_slocum = words.size() > 1 && words.front() == "c";
+  const auto is_command = [&](const std::string& word) {
+    return is_of_slocum || std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
+             return is_among_words(known.word, word);
+           });
+  };
+  const bool has_command = std::ranges::any_of(last, is_command);
+  last.pop_back();
+  return has_command || std::ranges::all_of(last, tells_which) ? "" : "no command by its last word";
+}
+
+std::optional<Validity> validity_by_name(std::string_view name) {
+  constexpr std::string_view kAbout =
+      "velocity velocities vel dvl bt btm bottom track is has flag u v w speed data";
+  constexpr std::string_view kWhere1 = "valid validity lock locked";
+  constexpr std::string_view kWhere0 = "invalid lost unlocked";
+  constexpr std::string_view kMerit = "fom merit";
+  std::optional<Validity> found;
+  for (const std::string& word : words_of(name)) {
+    if (is_among_words(kWhere1, word)) {
+      found = Validity::where_1;
+    } else if (is_among_words(kWhere0, word)) {
+      found = Validity::where_0;
+    } else if (is_among_words(kMerit, word)) {
+      found = Validity::merit;
+    } else if (!is_among_words(kAbout, word) && word != "figure" && word != "of") {
+      return std::nullopt;
+    }
+  }
+  return found;
+}
+
+std::optional<std::pair<std::string, double>> validity_of_message(std::string_view type) {
+  constexpr std::array kFields = std::to_array<std::pair<std::string_view, const char*>>({
+      {"dvl_msgs/DVL", "velocity_valid"},
+      {"waterlinked_a50_ros_driver/DVL", "velocity_valid"},
+  });
+  constexpr double kLeastBeams = 3.0;  // that tell three velocities
+  if (type == "marine_acoustic_msgs/Dvl") {
+    return std::pair("num_good_beams", kLeastBeams);
+  }
+  const auto* const found = std::ranges::find(kFields, type, &decltype(kFields)::value_type::first);
+  return found == kFields.end() ? std::nullopt : std::optional(std::pair(found->second, 1.0));
+}
+
 bool names_fin(std::string_view column) {
   return std::ranges::any_of(words_of(column), [](const std::string& word) {
     const std::size_t letters = word.find_last_not_of("0123456789") + 1;
@@ -345,6 +523,15 @@ std::optional<std::string> pose_part_by_name(std::string_view name) {
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::string> measured_pose_part(std::string_view name) {
+  constexpr std::string_view kOther =
+      "cmd command desired ref target setpoint rate speed vel velocity accel true error covariance";
+  const std::vector<std::string> words = words_of(name);
+  const bool is_other = std::ranges::any_of(
+      words, [&](const std::string& word) { return is_among_words(kOther, word); });
+  return is_other ? std::nullopt : pose_part_by_name(name);
 }
 
 }  // namespace kelpie::log

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kelpie::log {
@@ -41,13 +42,33 @@ struct KnownWord {
   Kind kind;         ///< two words of a kind for the same thrusters are two readings
   int rank;          ///< as a message's
   std::string_view why = {};
+  bool is_weak = false;  ///< tells that somebody commands something, not that an actuator does
 };
 
 /// The known messages: of each part of a topic the first match counts.
 std::span<const KnownMessage> known_messages();
 const std::vector<KnownWord>& known_command_words();
-/// Words that exclude a command: time stamps, currents, limits.
-std::span<const std::string_view> known_other_words();
+/// Why a signal of this name is no input of a model, as far as the name alone tells: "a counter",
+/// "a measurement, no command"; "": it may be one.
+std::string why_no_input(std::string_view name);
+/// The same of a command, of which more is asked: its last word is of an actuator, a side or a
+/// number, and no word is of a time stamp, a current, a limit, a demand to a controller.
+std::string why_no_command(std::string_view name);
+/// What the values of a column tell of the validity of velocities, by its name: velocities are
+/// measured where it is 1 (velocity_valid, bottom_lock), where it is 0 (dvl_invalid), or where a
+/// figure of merit is small (fom).
+enum class Validity { where_1, where_0, merit };
+std::optional<Validity> validity_by_name(std::string_view name);
+/// The field of a message of this type ("dvl_msgs/DVL") that tells whether its velocities are
+/// valid, and the least value of a valid one.
+std::optional<std::pair<std::string, double>> validity_of_message(std::string_view type);
+/// Words before or behind the name of a column ("true_u", "u_next") that make another of it, and
+/// why that is no input.
+struct KnownAffix {
+  std::string_view words;
+  std::string_view why;
+};
+std::span<const KnownAffix> known_affixes();
 /// Fields of a thruster's message, the likeliest first.
 std::span<const std::string_view> known_command_fields();
 /// Columns of time, besides kTimeNames.
@@ -68,6 +89,9 @@ bool names_fin(std::string_view column);
 /// A part of a pose by the last words of a name: "x" of px, pos_x and north; "z" of depth; "yaw" of
 /// psi and heading; roll, pitch, qw, qx, qy, qz. Empty: none.
 std::optional<std::string> pose_part_by_name(std::string_view name);
+
+/// The same, but for a demand, an error, a rate, a true value: what a sensor tells of a pose.
+std::optional<std::string> measured_pose_part(std::string_view name);
 
 /// The axis of a velocity from the name, 0 to 5 for u, v, w, p, q, r.
 std::optional<std::size_t> velocity_by_name(std::string_view name);

@@ -49,6 +49,10 @@ Frame frame_of(const file::TomlNode& value) {
   return file::located(value, [&] { return frame_from(name); });
 }
 
+bag::Clock clock_of(const file::TomlNode& value) {
+  return choice(value, {"receive", "header"}) == 0 ? bag::Clock::receive : bag::Clock::header;
+}
+
 [[noreturn]] void refuse(const LogConfig& config, const std::string& key,
                          const std::string& message) {
   throw InputError({.file = config.source, .field = key}, message);
@@ -90,11 +94,8 @@ class LogConfigReader {
         {"scale", [&](const TomlNode& value) { read_scales(value); }},
         {"actuators", [&](const TomlNode& value) { read_actuators(value); }},
         {"derived", [&](const TomlNode& value) { read_derived(value); }},
-        {"clock",
-         [&](const TomlNode& value) {
-           config_.clock =
-               choice(value, {"receive", "header"}) == 0 ? bag::Clock::receive : bag::Clock::header;
-         }},
+        {"valid", [&](const TomlNode& value) { read_validity(value, config_.valid); }},
+        {"clock", [&](const TomlNode& value) { config_.clock = clock_of(value); }},
         {"armed_only", [&](const TomlNode& value) { config_.armed_only = value.flag(); }},
         {"mirror_motors", [&](const TomlNode& value) { read_mirror(value); }},
         {"messages",
@@ -398,6 +399,14 @@ void LogConfig::refuse_column(const std::string& column, const std::string& why)
   const auto known = places.find(column);
   throw InputError(known == places.end() ? Place{.file = source, .field = "log"} : known->second,
                    why);
+}
+
+void read_validity(const file::TomlNode& table, std::map<std::string, double>& valid) {
+  for (const file::TomlNode& value :
+       table.members("a table of fields, as in {\"/dvl:velocity_valid\" = 1}")) {
+    file::located(value, [&] { bag::parse_column(value.key()); });
+    valid[value.key()] = value.number("the least value of a valid message, a number");
+  }
 }
 
 LogConfig read_log_config(const std::filesystem::path& file) {

@@ -22,7 +22,9 @@ struct LogConfig {
   bag::Clock clock = bag::Clock::receive;
   bool armed_only = false;     ///< leave out messages while motors are disarmed (AutopilotState)
   bool mirror_motors = false;  ///< outputs as the frame's table has them (pulse_factor())
-  std::filesystem::path messages;         ///< folder of .msg files, or empty
+  std::filesystem::path messages;  ///< folder of .msg files, or empty
+  /// Columns that tell whether the velocities of their topic are valid: at this value and above.
+  std::map<std::string, double> valid{};
   std::map<std::string, Place> places{};  ///< in the file, of each source's column
 
   /// Throws an InputError about a source's column, with file, line and key.
@@ -30,6 +32,10 @@ struct LogConfig {
 
   bool makes_samples() const { return !plan.sources.empty(); }
 };
+
+/// Reads a table of validity, {"/dvl:velocity_valid" = 1}: the least value of a valid message.
+/// Throws InputError (key) on a name that is no column of a recording, and on no number.
+void read_validity(const file::TomlNode& table, std::map<std::string, double>& valid);
 
 /// Reads a configuration file (TOML); settings of the model are skipped. Returns defaults for an
 /// empty path, or for a file without [log]. Throws InputError (file, line, key): missing file, no

@@ -13,6 +13,7 @@
 
 #include "core/quantile.hpp"
 #include "kelpie/motion/unit.hpp"
+#include "log/pair_moments.hpp"
 #include "log/tuning.hpp"
 #include "motion/states.hpp"
 
@@ -65,35 +66,22 @@ class Windows {
   /// Correlation and signed ratio for windows of `length` rows, the target read `late` rows later;
   /// empty for too few windows, or without motion.
   std::optional<std::pair<double, double>> compare(std::size_t length, std::ptrdiff_t late) const {
-    double n = 0.0;
-    double mean_x = 0.0;
-    double mean_y = 0.0;
-    double xx = 0.0;
-    double yy = 0.0;
-    double xy = 0.0;
+    PairMoments moments;
     const auto rows = static_cast<std::ptrdiff_t>(data_.rows());
     const auto step = static_cast<std::ptrdiff_t>(length);
     for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, -late);
          i + step + std::max<std::ptrdiff_t>(0, late) < rows; i += step) {
       const std::optional<double> x = slope(i, step);
       const std::optional<double> y = mean(i + late, step);
-      if (!x || !y) {
-        continue;
+      if (x && y) {
+        moments.add(*x, *y);
       }
-      n += 1.0;
-      const double dx = *x - mean_x;
-      const double dy = *y - mean_y;
-      mean_x += dx / n;
-      mean_y += dy / n;
-      xx += dx * (*x - mean_x);
-      yy += dy * (*y - mean_y);
-      xy += dx * (*y - mean_y);
     }
-    if (n < kLimits.least_windows || !(xx > 0.0) || !(yy > 0.0)) {
+    if (moments.n < kLimits.least_windows || !moments.varies()) {
       return std::nullopt;
     }
-    const double correlation = xy / std::sqrt(xx * yy);
-    return std::pair(correlation, std::copysign(std::sqrt(yy / xx), correlation));
+    const double correlation = moments.correlation();
+    return std::pair(correlation, std::copysign(std::sqrt(moments.yy / moments.xx), correlation));
   }
 
  private:
@@ -351,7 +339,7 @@ std::optional<Mistake> absurd_values(const Dataset& data, std::size_t input) {
 }  // namespace
 
 std::vector<Mistake> clock_mistakes(const Dataset& data) {
-  std::vector<Mistake> found;
+  std::vector<Mistake> found = data.doubts;
   for (std::size_t input = 0; input < data.input_names.size() && data.rows() > 0; ++input) {
     if (velocity_axis(data.input_names[input])) {
       if (const auto mistake = absurd_values(data, input)) {

@@ -25,13 +25,6 @@ struct TargetCheck {
 /// without motion, or with fewer than 20 windows has no check. Cost O(rows). Allocates.
 std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states);
 
-/// What cannot be right in a log, or hardly.
-struct Mistake {
-  std::string what;        ///< in words, with the figures that show the mistake
-  std::string remedy;      ///< an option of the command line where an option helps
-  bool is_refused = true;  ///< false: worth a word, but the log can be learned
-};
-
 /// "rdot …; --units r=deg/s converts".
 std::string mistake_text(const Mistake& mistake);
 
@@ -42,9 +35,9 @@ std::string mistake_text(const Mistake& mistake);
 /// since filters do the same. Cost O(rows). Allocates. Throws what find_states() throws.
 std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states);
 
-/// Mistakes of the clock: stamps equal to the stamp before (refused where more than 30 % are),
-/// ten minutes without a row, more than 200 rows per second; and velocities of which a few rows are
-/// ten times as far out as all others. Cost O(rows). Allocates.
+/// Dataset::doubts, and mistakes of the clock: stamps equal to the stamp before (refused where more
+/// than 30 % are), ten minutes without a row, more than 200 rows per second; and velocities of
+/// which a few rows are ten times as far out as all others. Cost O(rows). Allocates.
 std::vector<Mistake> clock_mistakes(const Dataset& data);
 
 }  // namespace kelpie::log

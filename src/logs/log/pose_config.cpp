@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/pose_config.hpp"
+#include "log/row_clock.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +29,7 @@ namespace {
 // Commands by name; of several readings none.
 std::vector<std::string> commands_of(const Table& table) {
   std::vector<Candidate> likely;
-  for (Candidate& one : find_candidates(inspect_table(table))) {
+  for (Candidate& one : find_candidates(inspect_table(table, {}))) {
     if (one.part == Part::commands && (likely.empty() || one.rank == likely.front().rank)) {
       likely.push_back(std::move(one));
     }
@@ -46,16 +47,15 @@ std::vector<std::string> commands_of(const Table& table) {
   return names;
 }
 
-double slowest_hz(const Table& table, const std::string& time,
+double slowest_hz(const Table& table, const RowClock& clock,
                   const std::vector<std::string>& columns) {
-  const std::vector<double>& times = table.columns[table.find(time)];
-  const double unit_s = table.seconds_per_unit(table.find(time));
+  const std::vector<double> times_s = row_times_s(table, clock.column, clock.rate_hz);
   double slowest = std::numeric_limits<double>::infinity();
   for (const std::string& name : columns) {
     Signal signal;
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      if (std::isfinite(times[row]) && std::isfinite(table.columns[table.find(name)][row])) {
-        signal.times_s.push_back(unit_s * times[row]);
+      if (std::isfinite(times_s[row]) && std::isfinite(table.columns[table.find(name)][row])) {
+        signal.times_s.push_back(times_s[row]);
         signal.values.push_back(table.columns[table.find(name)][row]);
       }
     }
@@ -64,7 +64,7 @@ double slowest_hz(const Table& table, const std::string& time,
     slowest = step_s > 0.0 ? std::min(slowest, 1.0 / step_s) : slowest;
   }
   if (!std::isfinite(slowest)) {
-    refuse_pose(table, time, "tells no time between the poses");
+    refuse_pose(table, clock.column, "tells no time between the poses");
   }
   return slowest;
 }
@@ -87,8 +87,8 @@ LogConfig pose_config(const Table& table, const Roles& roles) {
     }
     parts.push_back(*part + " = " + toml_text(columns.back()));
   }
-  const std::string time = roles.time.empty() ? time_field(table) : roles.time;
-  if (time.empty()) {
+  const RowClock clock = row_clock(table, roles);
+  if (clock.column.empty() && clock.rate_hz == 0.0) {
     refuse_pose(table, "--time", "names the column of the time, which poses take");
   }
   std::vector<std::string> others;
@@ -106,11 +106,12 @@ LogConfig pose_config(const Table& table, const Roles& roles) {
       others.push_back(toml_text(name) + " = " + toml_text(name));
     }
   }
-  const double hz = slowest_hz(table, time, columns);
-  const std::string text = fmt::format(
-      "[log]\ntime = {}\nrate = {:.6g}\ngap = {:.6g}\npose = {{{}}}\n[log.commands]\n{}\n",
-      toml_text(time), std::min(kTuning.usual_rate_hz, hz), std::max(1.0, 3.0 / hz),
-      join_text(parts, ", "), join_text(others, "\n"));
+  const double hz = slowest_hz(table, clock, columns);
+  const std::string time = clock.column.empty() ? "" : "time = " + toml_text(clock.column);
+  const std::string text =
+      fmt::format("[log]\n{}\nrate = {:.6g}\ngap = {:.6g}\npose = {{{}}}\n[log.commands]\n{}\n",
+                  time, std::min(kTuning.usual_rate_hz, hz), std::max(1.0, 3.0 / hz),
+                  join_text(parts, ", "), join_text(others, "\n"));
   return read_log_config(file::TomlNode::parse(text, table.source));
 }
 

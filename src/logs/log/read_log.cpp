@@ -2,6 +2,8 @@
 #include "log/read_log.hpp"
 #include "log/ardusub.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -16,10 +18,13 @@
 #include "log/dataset.hpp"
 #include "log/draft_plan.hpp"
 #include "log/held_table.hpp"
+#include "log/pose_check.hpp"
 #include "log/pose_config.hpp"
 #include "log/pose_instants.hpp"
 #include "log/signal.hpp"
+#include "log/validity.hpp"
 #include "motion/signal_names.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -95,6 +100,41 @@ std::map<std::string, std::string> all_units(std::map<std::string, std::string> 
   return found;
 }
 
+// Whether accelerations come of the source.
+bool is_velocity(const SamplingPlan& plan, const std::string& name) {
+  return velocity_axis(name).has_value() ||
+         std::ranges::count(plan.derived, name, &StreamPlan::Derived::of) > 0 ||
+         (plan.pose && std::ranges::count(plan.pose->sources(), name) > 0);
+}
+
+// A velocity without the messages whose topic calls itself invalid, and without marks of no value.
+// Returns how many there are.
+std::size_t drop_invalid(const bag::Series& series, const LogConfig& config, const Roles& roles,
+                         Signal& signal) {
+  const bool are_marks =
+      velocity_axis(signal.name) && std::ranges::count(roles.missing, "none") == 0;
+  const std::optional<double> mark = are_marks ? mark_of_none(signal.values) : std::nullopt;
+  const std::vector<MissingValue> missing = missing_values(roles);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < signal.values.size(); ++k) {
+    const bool is_invalid =
+        is_velocity(config.plan, signal.name) &&
+        std::ranges::any_of(config.valid, [&](const auto& one) {
+          const std::size_t column = series.column(one.first);
+          return column < series.names.size() && !(series.values[column][k] >= one.second);
+        });
+    const bool is_missing = std::ranges::any_of(missing, [&](const MissingValue& one) {
+      return signal.values[k] == one.value &&
+             (one.column.empty() || one.column == signal.name || one.column == signal.from);
+    });
+    if (is_invalid || is_missing || (mark && signal.values[k] == *mark)) {
+      signal.values[k] = std::numeric_limits<double>::quiet_NaN();
+      ++count;
+    }
+  }
+  return count;
+}
+
 // Those of the plan's sources.
 struct BagSignals {
   std::vector<Signal> signals;
@@ -124,13 +164,15 @@ void mirror(Signal& signal, const ParameterMap& parameters, const std::string& s
 }
 
 BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
-                          const bag::RowTimes& times) {
+                          const bag::RowTimes& times, const Roles& roles) {
   std::vector<std::string> columns;
   for (const SamplingPlan::Source& column : config.plan.sources) {
     if (std::ranges::find(columns, column.from) == columns.end()) {
       columns.push_back(column.from);
     }
   }
+  std::ranges::transform(config.valid, std::back_inserter(columns),
+                         [](const auto& one) { return one.first; });
   const bag::MessageDefinitions definitions(source.definitions.empty() ? config.messages.string()
                                                                        : source.definitions);
   const std::unique_ptr<bag::MessageReader> bag = source.open_bag(times);
@@ -147,6 +189,13 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   for (const SamplingPlan::Source& column : config.plan.sources) {
     const bag::Series& series = bag::series_with(all, column.from);
     found.signals.push_back(signal_of(column, series, found.origin_ns));
+    if (const std::size_t count = drop_invalid(series, config, roles, found.signals.back())) {
+      found.losses += fmt::format("{}: {} of {} messages are no measurement of {}{}\n", source.path,
+                                  count, series.times_ns.size(), column.name,
+                                  count < series.times_ns.size()
+                                      ? ""
+                                      : ": no velocity was measured, nothing can be learned");
+    }
     if (config.mirror_motors) {
       mirror(found.signals.back(), parameters, bag->source());
     }
@@ -160,12 +209,12 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
 // Every column is a topic of its own: its empty cells have no samples.
 std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& plan,
                                      const std::string& time) {
-  if (time.empty()) {
-    refuse(table.source, "time", "is missing; [log] has to name the column of the time");
+  if (const std::string known = row_clock(table, {.rate_hz = plan.rate_hz}).column;
+      time.empty() && !known.empty()) {
+    refuse(table.source, "time",
+           "is missing; [log] has to name the column of the time, as in time = \"" + known + "\"");
   }
-  const std::size_t time_column = table.find(time);
-  table.require_numbers(time_column);
-  const double unit_s = table.seconds_per_unit(time_column);
+  const std::vector<double> times_s = row_times_s(table, time, plan.rate_hz);
   std::vector<Signal> signals;
   for (const SamplingPlan::Source& source : plan.sources) {
     const std::size_t column = table.find(source.from);
@@ -175,8 +224,8 @@ std::vector<Signal> signals_of_table(const Table& table, const SamplingPlan& pla
     signal.from = source.from;
     signal.topic = source.from;
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      if (std::isfinite(table.columns[time_column][row])) {
-        signal.times_s.push_back(unit_s * table.columns[time_column][row]);
+      if (std::isfinite(times_s[row])) {
+        signal.times_s.push_back(times_s[row]);
         signal.values.push_back(table.columns[column][row]);
       }
     }
@@ -230,20 +279,6 @@ void add_neutral_pulses(const Table& table, Roles& roles) {
     });
     if (is_whole && are_pulses_about_rest(low, high)) {
       roles.actuators[input] = {.neutral = kNeutralPulseUs};
-    }
-  }
-}
-
-// The table's units as a draft is to see them where the user says others: stamps have theirs, and
-// what else --units converts, on top of any draft, has none.
-void tell_units(const Roles& roles, Table& table) {
-  const std::string time = roles.time.empty() ? time_field(table) : roles.time;
-  table.units.resize(table.names.size());
-  for (const auto& [name, text] : roles.units) {
-    const auto found = std::ranges::find(table.names, name);
-    if (found != table.names.end()) {
-      table.units[static_cast<std::size_t>(found - table.names.begin())] =
-          name == time ? text : std::string();
     }
   }
 }
@@ -322,7 +357,7 @@ Log sampled_log(const LogSource& source, bool is_of_bag, Table table, const LogC
   }
   BagSignals found;
   if (is_of_bag) {
-    found = signals_of_bag(source, config, times);
+    found = signals_of_bag(source, config, times, roles);
   } else {
     if (const auto unit = log.roles.units.find(times.time); unit != log.roles.units.end()) {
       convert_units(table, {*unit});
@@ -372,6 +407,7 @@ Dataset Log::dataset() const {
     add_neutral_pulses(table, all);
   }
   Dataset data = make_dataset(table, all);
+  data.doubts = doubts;
   add_pose_instants(instants, data);
   for (const SamplingReport::OfDerived& derived : sampling.derived) {
     data.derived.push_back(derived.name);
@@ -411,10 +447,7 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
   if (!is_of_bag && can_be_taken(table, roles, why_not)) {
     return taken_log(std::move(table), roles);
   }
-  if (!is_of_bag) {
-    tell_units(roles, table);
-  }
-  Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles.time);
+  Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles);
   if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
     return taken_log(std::move(table), roles);  // who uses it says what is missing
   }
@@ -432,15 +465,20 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
 
 Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
   const bool is_of_bag = bag::is_bag(source.path);
-  Table table = is_of_bag ? Table{} : read_csv(source.path);
-  const std::string missing = set_missing_pulses(table);
+  std::string told;
+  Table table = is_of_bag ? Table{} : read_table(source.path, roles, told);
+  std::vector<Mistake> doubts;
+  if (!is_of_bag && !config.makes_samples() && roles.pose.empty()) {
+    doubts = check_pose(table, roles).mistakes;
+  }
   Log log = log_of(source, is_of_bag, std::move(table), config, roles);
-  log.losses += missing;
+  log.losses += told;
+  log.doubts = std::move(doubts);
   return log;
 }
 
 Reach read_reach(const LogSource& source, const LogConfig& config) {
-  const BagSignals found = signals_of_bag(source, config, row_times(config, {}));
+  const BagSignals found = signals_of_bag(source, config, row_times(config, {}), {});
   Reach reach{.origin_ns = found.origin_ns, .end_s = std::numeric_limits<double>::infinity()};
   for (std::size_t k = 0; k < found.signals.size(); ++k) {
     const Signal& signal = found.signals[k];

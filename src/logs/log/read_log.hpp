@@ -28,7 +28,8 @@ struct Log {
   std::size_t disarmed = 0;  ///< messages left out because motors were disarmed
   /// Units of a bag's columns and of Roles::units, for display; units of a CSV are in Table::units.
   std::map<std::string, std::string> units{};
-  std::optional<Draft> draft{};  ///< the draft used without configuration
+  std::vector<Mistake> doubts{};  ///< Dataset::doubts
+  std::optional<Draft> draft{};   ///< the draft used without configuration
 
   /// The data for a learner; missing roles are guessed from the names, and inputs of a table that
   /// are pulses of servos, in whole µs to both sides of 1500, rest at 1500 unless an actuator is

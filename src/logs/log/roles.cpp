@@ -15,6 +15,7 @@
 #include "kelpie/core/scaling.hpp"
 #include "log/dataset.hpp"
 #include "log/known_roles.hpp"
+#include "log/pair_moments.hpp"
 #include "motion/states.hpp"
 
 namespace kelpie::log {
@@ -22,33 +23,9 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kConfigurations{"conf", "configuration"};
 constexpr std::string_view kSplit = "split";
-// Columns that say where or when, which no dynamics depend on.
-constexpr std::array<std::string_view, 17> kPlaces{
-    "depth", "lat",  "lon",  "latitude", "longitude", "altitude", "px",    "py",   "pz",
-    "north", "east", "down", "easting",  "northing",  "pos_x",    "pos_y", "pos_z"};
-constexpr std::array<std::string_view, 11> kCounters{"run",   "index",  "idx",      "row",
-                                                     "seq",   "count",  "frame",    "window",
-                                                     "trial", "sample", "iteration"};
-// Columns that say what somebody knows of a row, and the vehicle does not.
-constexpr std::array<std::string_view, 12> kLabels{"held",      "held_out", "fold",   "label",
-                                                   "condition", "fault",    "faults", "class",
-                                                   "phase",     "mission",  "mode",   "scenario"};
-// Of the angles heading alone is without effect: roll and pitch restore.
-constexpr std::array<std::string_view, 8> kHeadings{"heading", "psi",    "yaw",     "hdg",
-                                                    "cog",     "course", "yaw_deg", "compass"};
 constexpr std::array<std::string_view, 5> kHeadingOfVehicle{"psi", "yaw", "heading", "hdg",
                                                             "compass"};
 constexpr std::array<std::string_view, 3> kAngleEndings{"", "_deg", "_rad"};
-// Words before the axis of an acceleration, and whole names.
-constexpr std::array<std::string_view, 3> kAccelerationWords{"acc", "accel", "acceleration"};
-constexpr std::array<std::string_view, 6> kAccelerations{"ax", "ay", "az", "accx", "accy", "accz"};
-constexpr std::array<std::string_view, 2> kMeasured{"power_w", "sog"};
-constexpr std::array<std::string_view, 5> kMeasuredWords{"imu", "temp", "sats", "nsats",
-                                                         "satellites"};
-constexpr std::array<std::string_view, 4> kBatteryWords{"battery", "batt", "soc", "vbat"};
-constexpr std::array<std::string_view, 6> kBatteries{"volt",      "volts",     "voltage",
-                                                     "voltage_v", "current_a", "amps"};
-
 bool is_among(std::string_view name, const auto& names) {
   return std::ranges::find(names, name) != std::ranges::end(names);
 }
@@ -134,6 +111,7 @@ class Header {
   bool is_quantity(std::string_view stem) const {
     return names_.contains(stem) && !is_among(stem, kTimeNames);
   }
+  // As kelpie simulates it.
   bool is_true_value(std::string_view name) const {
     constexpr std::string_view kTrue = "_true";
     return name.ends_with(kTrue) && is_quantity(name.substr(0, name.size() - kTrue.size()));
@@ -144,34 +122,77 @@ class Header {
   std::unordered_set<std::string_view> stamps_;
 };
 
-// What sensors feel of the motion or of the weather: effects of forces, or nothing of them.
-std::string measurement(std::string_view name) {
-  const std::vector<std::string> words = words_of(name);
-  const std::string whole = join_text(words, "_");
-  const bool is_of_axis = words.size() > 1 && words.back().size() == 1 && words.back() >= "x" &&
-                          words.back() <= "z" &&
-                          is_among(words[words.size() - 2], kAccelerationWords);
-  if (is_of_axis || is_among(whole, kAccelerations)) {
-    return "an acceleration";
-  }
-  const bool is_measured =
-      is_among(whole, kMeasured) || std::ranges::any_of(words, [](const std::string& word) {
-        return is_among(word, kMeasuredWords) || word.starts_with("temperature");
-      });
-  return is_measured ? "a measurement, no command" : "";
-}
-
-bool tells_battery(std::string_view name) {
-  return is_among(name, kBatteries) ||
-         std::ranges::any_of(words_of(name),
-                             [](const std::string& word) { return is_among(word, kBatteryWords); });
-}
-
 // Whether a target is the derivative of the column.
 bool is_state(std::string_view name, const Roles& roles) {
   return std::ranges::any_of(roles.targets, [&](const std::string& target) {
     return is_among(name, differentiated(without_unit(target)));
   });
+}
+
+// Of "true_u" and "u_next" beside u, why they are no inputs.
+std::string reason_by_affix(const Table& table, const std::string& name) {
+  const std::size_t first = name.find('_');
+  const std::size_t last = name.rfind('_');
+  if (first == std::string::npos) {
+    return "";
+  }
+  for (const KnownAffix& affix : known_affixes()) {
+    const std::vector<std::string> words = split_text(std::string(affix.words), ' ');
+    for (const auto& [word, rest] : {std::pair(name.substr(0, first), name.substr(first + 1)),
+                                     std::pair(name.substr(last + 1), name.substr(0, last))}) {
+      if (is_among(word, words) && is_among(rest, table.names)) {
+        return fmt::format(fmt::runtime(affix.why), rest);
+      }
+    }
+  }
+  return "";
+}
+
+// Whether a word of the name is one of commands, numbered or not.
+bool has_command_word(std::string_view name) {
+  return std::ranges::any_of(words_of(name), [](const std::string& word) {
+    const std::string stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
+    return std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
+      return known.word == word || known.word == stem + "#";
+    });
+  });
+}
+
+// Of a column whose name is no command's and that nearly copies a velocity or target, perhaps some
+// rows later or earlier, what it copies.
+std::string near_copy_of(const Table& table, std::size_t column, const Roles& roles) {
+  constexpr double kNearCopy = 0.98;  // correlation, by hand
+  constexpr double kNearTarget =
+      0.995;  // a force of a vehicle without much drag comes near; by hand
+  constexpr std::ptrdiff_t kMostShift = 3;
+  constexpr std::ptrdiff_t kFewRows = 100;
+  const std::string& name = table.names[column];
+  const std::span<const double> values = values_of(table, column);
+  if (has_command_word(name) || velocity_by_name(name) || std::ssize(values) < kFewRows) {
+    return "";
+  }
+  std::string copied;
+  double best = 0.0;
+  for (std::size_t other = 0; other < table.names.size(); ++other) {
+    const std::string& known = table.names[other];
+    const bool is_target = is_among(known, roles.targets);
+    for (std::ptrdiff_t shift = -kMostShift;
+         shift <= kMostShift && (is_target || is_state(known, roles)); ++shift) {
+      PairMoments moments;
+      for (std::ptrdiff_t row = kMostShift; row + kMostShift < std::ssize(values); ++row) {
+        moments.add(values[static_cast<std::size_t>(row)],
+                    values_of(table, other)[static_cast<std::size_t>(row + shift)]);
+      }
+      const double least = is_target ? kNearTarget : kNearCopy;
+      if (std::abs(moments.correlation()) > std::max(best, least)) {
+        best = std::abs(moments.correlation());
+        copied =
+            fmt::format("goes with {}, read {} rows {}: correlation {:.3f}", known, std::abs(shift),
+                        shift < 0 ? "earlier" : "later", moments.correlation());
+      }
+    }
+  }
+  return copied;
 }
 
 // Why a column that could be an input is left out of the guessed inputs; empty: an input.
@@ -188,23 +209,18 @@ std::string reason_against(const Table& table, std::size_t column, const Roles& 
   if (table.is_of_words(column)) {
     return fmt::format("'{}' is not a number", table.texts[column].cell);
   }
-  if (is_among(name, kCounters) || name.ends_with("_step") || counts_rows(values)) {
+  if (counts_rows(values)) {
     return "a counter";
   }
-  if (is_among(name, kLabels) || name.ends_with("_state") || name.ends_with("_mode")) {
-    return "a label";
+  const bool is_velocity = is_state(name, roles);
+  if (std::string why = why_no_input(name); !why.empty() && !is_velocity) {
+    return why;
   }
-  if (is_among(name, kPlaces)) {
-    return "a position";
-  }
-  if (is_among(name, kHeadings)) {
-    return "a heading";
-  }
-  if (tells_battery(name)) {
-    return "of a battery";
-  }
-  if (const std::string what = measurement(name); !what.empty() && !is_state(name, roles)) {
-    return what + "; --inputs takes it";
+  for (const std::string& why :
+       {reason_by_affix(table, name), is_velocity ? "" : near_copy_of(table, column, roles)}) {
+    if (!why.empty()) {
+      return why + "; --inputs takes it";
+    }
   }
   if (is_constant(values)) {
     return fmt::format("{} in every row", values.front());

@@ -19,6 +19,28 @@ inline constexpr struct Tuning {
   std::size_t most_rows = 10'000'000;         ///< of samples: 11 days at 10 Hz; by hand
   double joined_gap_s = 60.0;                 ///< between joined logs; by hand
 
+  /// The clock of a table's rows.
+  struct Clock {
+    double slowest_hz = 0.01;          ///< of rows; by hand
+    double fastest_hz = 1e5;           ///< by hand
+    double longest_step_s = 1.1;       ///< of rows in another unit than s; by hand
+    double longest_memory_s = 300.0;   ///< of velocities, until half is forgotten; by hand
+    double least_whole_step_s = 0.9;   ///< of whole numbers that may count ms; by hand
+    double since_1970_s = 1e8;         ///< numbers beyond tell their unit by their size; by hand
+    double near_step_s = 60.0;         ///< distance from an hour, a day, a week; by hand
+    double longest_step_back_s = 1.0;  ///< that is sorted without a word; by hand
+  } clock;
+
+  /// Velocities that are not measured.
+  struct Validity {
+    double rounding = 1e-4;       ///< of a mark, as a share: logs have four digits; by hand
+    double far = 3.0;             ///< of a mark from zero, in sizes of the farthest other; by hand
+    std::size_t least_marks = 3;  ///< of a value that nobody knows as a mark; by hand
+    double most_merit = 0.4;      ///< [m/s] of a figure of merit: Water Linked's DVL A50
+    double least_jump = 0.15;     ///< into and out of zeros, of the speeds' 90 % quantile; by hand
+    std::size_t least_zeros = 3;  ///< rows; by hand
+  } validity;
+
   /// Plausibility: in CSV logs of real and simulated vehicles ratios lie between 0.83 and 1.08
   /// where the correlation is 0.8 or more; in an autopilot's log at rest on a bench one is 0.38.
   struct Plausibility {
@@ -47,6 +69,18 @@ inline constexpr struct Tuning {
     double most_absurd = 2e-3;  ///< share of rows with values far beyond all others: by hand
     double absurd = 10.0;       ///< of the largest distance of all others: by hand
   } plausibility;
+
+  /// Velocities beside the poses of the same log (check_pose()). By hand.
+  struct PoseCheck {
+    double least_windows = 12.0;
+    double least_share = 0.7;         ///< of the ways, explained by velocities in some meaning
+    double least_gain = 0.05;         ///< of a mirrored world
+    double least_unexplained = 0.02;  ///< by velocities of the vehicle
+    double clearer = 4.0;             ///< times less unexplained in another meaning
+    double near_factor = 0.1;         ///< logarithm of a factor beside a unit's
+    double least_turn_deg = 15.0;
+    double least_correlation = 0.8;  ///< of the yaw rate and the slope of yaw
+  } pose_check;
 
   /// The window of a pose (find_pose_window()).
   struct PoseWindow {

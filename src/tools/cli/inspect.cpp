@@ -22,7 +22,7 @@ namespace kelpie::cli {
 namespace {
 
 struct InspectArguments {
-  log::LogSource log;
+  LogOptions log;
   std::string json;
   std::string draft;
 };
@@ -34,10 +34,11 @@ struct LearnableLog {
   std::optional<study::FirstLook> look;
 };
 
-LearnableLog look_at(const log::LogSource& source, const log::Draft& draft) {
+LearnableLog look_at(const log::LogSource& source, const log::Roles& roles,
+                     const log::Draft& draft) {
   LearnableLog found;
   try {
-    const log::Log log = log::read_log(source, {}, {});
+    const log::Log log = log::read_log(source, {}, roles);
     warn("{}", log::left_out_text(log.table, log.roles));
     const log::Dataset data = log.dataset();
     found.mistakes = log::target_mistakes(data, "auto");
@@ -52,7 +53,9 @@ LearnableLog look_at(const log::LogSource& source, const log::Draft& draft) {
 }
 
 void inspect(const InspectArguments& options) {
-  std::vector<std::string> taken{options.log.path};
+  const log::LogSource& source = options.log.source;
+  const log::Roles roles = options.log.over({});
+  std::vector<std::string> taken{source.path};
   for (const auto& [option, file] :
        {std::pair("--json", options.json), std::pair("--template", options.draft)}) {
     if (!file.empty()) {
@@ -60,13 +63,13 @@ void inspect(const InspectArguments& options) {
       taken.push_back(file);
     }
   }
-  const auto [report, draft, losses] = log::inspect_log(options.log);
-  const auto [mistakes, look] = look_at(options.log, draft);
+  const auto [report, draft, losses] = log::inspect_log(source, roles);
+  const auto [mistakes, look] = look_at(source, roles, draft);
   if (!options.json.empty()) {
     file::write_file_whole(options.json,
-                           report::inspect_json(report, draft, look, mistakes, options.log.path));
+                           report::inspect_json(report, draft, look, mistakes, source.path));
   }
-  say("{}", report::inspect_table(report, options.log.path));
+  say("{}", report::inspect_table(report, source.path));
   say("{}", report::draft_table(draft, look) + report::mistakes_text(mistakes));
   if (!options.draft.empty()) {
     file::write_file_whole(options.draft, draft.toml);
@@ -82,7 +85,10 @@ void add_inspect(CLI::App& app) {
   const auto [command, options] = add_command(
       app, "inspect",
       "Say what is in a log: topics, rates, gaps, ranges, noise, what can be learned", inspect);
-  add_bag_options(*command, options->log, "log", "the log: " + log_formats());
+  add_bag_options(*command, options->log.source, "log", "the log: " + log_formats());
+  add_clock_options(*command, options->log.time, options->log.rate_hz);
+  add_units_option(*command, options->log.units);
+  add_missing_option(*command, options->log.missing);
   add_file(command, "--json", options->json, "write the report to this file, too");
   add_file(command, "--template", options->draft,
            "write the configuration that `kelpie learn` takes by --config to this file, as "

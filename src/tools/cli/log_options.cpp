@@ -125,7 +125,8 @@ void add_option(std::string& text, const char* option, const std::string& value)
 }  // namespace
 
 void check_clock(const log::Dataset& data, const PlanOptions& options) {
-  tell_mistakes(data.source, data.time_column, log::clock_mistakes(data), !options.accept.empty());
+  tell_mistakes(data.source, data.doubts.empty() ? data.time_column : "", log::clock_mistakes(data),
+                !options.accept.empty());
 }
 
 std::string check_targets(const log::Dataset& data, const std::string& states,
@@ -156,7 +157,7 @@ void LogOptions::add_to(CLI::App& command) {
 
 bool LogOptions::has_columns() const {
   return !inputs.empty() || !targets.empty() || !ignored.empty() || !time.empty() ||
-         rate_hz != 0.0 || !units.empty() || !pose.empty();
+         rate_hz != 0.0 || !units.empty() || !missing.empty() || !pose.empty();
 }
 
 void LogOptions::add_columns_to(CLI::App& command) {
@@ -165,6 +166,7 @@ void LogOptions::add_columns_to(CLI::App& command) {
   add_list(&command, "--ignore", ignored, "columns that are neither, separated by commas");
   add_clock_options(command, time, rate_hz);
   add_units_option(command, units);
+  add_missing_option(command, missing);
   add_pose_option(command, pose);
 }
 
@@ -188,6 +190,7 @@ log::Roles LogOptions::over(const log::Roles& file) const {
   }
   roles.also = also;
   roles.pose = pose;
+  roles.missing = missing;
   roles.has_curves = has_curves;
   add_units(units, roles.units);
   return roles;
@@ -202,6 +205,7 @@ std::string LogOptions::text() const {
   add_option(text, "--time", time);
   add_option(text, "--rate", rate_hz > 0.0 ? fmt::format("{}", rate_hz) : "");
   add_option(text, "--units", join_text(units, ","));
+  add_option(text, "--missing", join_text(missing, ","));
   add_option(text, "--pose", join_text(pose, ","));
   add_option(text, "--configuration", configuration);
   return text;
@@ -428,6 +432,12 @@ void add_units_option(CLI::App& command, std::vector<std::string>& units) {
   add_list(&command, "--units", units,
            "units of columns in the log, as in r=deg/s,u=cm/s,th1=rev/s: degrees, mm, cm, km, "
            "knots, g and time stamps (t=ms) are converted to the SI");
+}
+
+void add_missing_option(CLI::App& command, std::vector<std::string>& missing) {
+  add_list(&command, "--missing", missing,
+           "values that stand for none, as in -999 or u=0; none: velocities are measured in every "
+           "row, whatever flags, marks and zeros say");
 }
 
 void add_identification_options(CLI::App& command, IdentificationOptions& options) {

@@ -31,10 +31,11 @@ struct LogOptions {
   std::string configuration;
   double rate_hz = 0.0;
   std::vector<std::string> ignored;
-  std::vector<std::string> units;   ///< column=unit
-  std::vector<std::string> also{};  ///< log::Roles::also
-  std::vector<std::string> pose{};  ///< log::Roles::pose
-  bool has_curves = false;          ///< log::Roles::has_curves
+  std::vector<std::string> units;      ///< column=unit
+  std::vector<std::string> also{};     ///< log::Roles::also
+  std::vector<std::string> pose{};     ///< log::Roles::pose
+  std::vector<std::string> missing{};  ///< log::Roles::missing
+  bool has_curves = false;             ///< log::Roles::has_curves
 
   void add_to(CLI::App& command);
   /// The options of add_to() that say what the columns of a table are.
@@ -155,6 +156,9 @@ void add_accept_option(CLI::App& command, std::vector<std::string>& accept);
 
 /// The options of a log's clock: --time and --rate.
 void add_clock_options(CLI::App& command, std::string& time, double& rate_hz);
+
+/// The option --missing (log::Roles::missing).
+void add_missing_option(CLI::App& command, std::vector<std::string>& missing);
 
 /// The option --units: columns whose values are converted to the SI.
 void add_units_option(CLI::App& command, std::vector<std::string>& units);

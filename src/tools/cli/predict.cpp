@@ -20,6 +20,7 @@
 #include "kelpie/core/setting.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "log/dataset.hpp"
+#include "log/row_clock.hpp"
 #include "model/snapshot.hpp"
 #include "study/alignment.hpp"
 #include "study/metrics.hpp"
@@ -35,6 +36,7 @@ struct PredictArguments {
   std::string time;
   double rate_hz = 0.0;
   std::vector<std::string> units;
+  std::vector<std::string> missing;
   std::vector<std::string> pose;
   bool jacobian = false;
   std::string current;
@@ -57,23 +59,6 @@ struct NewColumn {
   std::vector<double> values;  // NaN in rows that aren't seen
 };
 
-// Of the column `time`; without one, rows come at an even rate.
-std::vector<double> row_times_s(const log::Table& table, const std::string& time, double rate_hz) {
-  std::vector<double> times_s(table.rows());
-  if (time.empty()) {
-    for (std::size_t row = 0; row < times_s.size(); ++row) {
-      times_s[row] = static_cast<double>(row) / rate_hz;
-    }
-    return times_s;
-  }
-  const std::size_t column = table.find(time);
-  table.require_numbers(column);
-  const double unit_s = table.seconds_per_unit(column);
-  std::ranges::transform(table.columns[column], times_s.begin(),
-                         [&](double value) { return unit_s * value; });
-  return times_s;
-}
-
 // The rows with finite inputs, as the model is to see them.
 struct SeenRows {
   log::Dataset data;
@@ -94,7 +79,7 @@ SeenRows seen_rows(const TrainedModel& model, const log::Table& table, const log
   const double rate_hz = roles.rate_hz > 0.0        ? roles.rate_hz
                          : model.alignment.shifts() ? model.alignment.rate_hz()
                                                     : 1.0;
-  const std::vector<double> times_s = row_times_s(table, time, rate_hz);
+  const std::vector<double> times_s = log::row_times_s(table, time, rate_hz);
   SeenRows seen;
   seen.data.source = table.source;
   seen.data.input_names = model.input_names;
@@ -281,6 +266,7 @@ void predict_log(const PredictArguments& options, TrainedModel& model,
   }
   add_units(options.units, roles.units);
   roles.pose = options.pose;
+  roles.missing = options.missing;
   if (roles.rate_hz != 0.0) {
     require_range("rate", roles.rate_hz, {.low = 0.0, .open = true}, "rows per second");
   }
@@ -330,6 +316,7 @@ void add_predict(CLI::App& app) {
   add_bag_options(*command, options->source, "log", "the log: " + log_formats());
   add_clock_options(*command, options->time, options->rate_hz);
   add_units_option(*command, options->units);
+  add_missing_option(*command, options->missing);
   add_pose_option(*command, options->pose);
   add_file(command, "--config", options->config, "TOML file that says what signals to take");
   add_model(command, "--model", options->model);

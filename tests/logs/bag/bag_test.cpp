@@ -99,10 +99,28 @@ TEST(Bag, MetadataThatCannotBeUsedAreNamedWithTheirLine) {
                  "unknown (did you mean 'sqlite3'?)");
   write_metadata(folder.path(), "sqlite3", {"a.db3"}, "  compression_mode: FILE\n");
   expect_refusal(folder.path(), "rosbag2 compressed this bag");
-  write_metadata(folder.path(), "sqlite3", {"../a.db3"});
-  expect_refusal(folder.path(), "a file within the bag's folder");
+  write_metadata(folder.path(), "sqlite3", {".."});
+  expect_refusal(folder.path(), "the name of a file is due");
   write_metadata(folder.path(), "sqlite3", {});
   expect_refusal(folder.path(), "a list of files is due");
+}
+
+// Until Foxy from the folder above, of the recording machine, renamed since; never outside.
+TEST(Bag, AFileIsFoundInTheFolderByOtherPaths) {
+  const TemporaryFolder folder;
+  write_text(folder / "a.mcap", small_mcap());
+  for (const char* const path :
+       {"old/a.mcap", "/home/rec/old/a.mcap", "../../a.mcap", "before.mcap"}) {
+    write_metadata(folder.path(), "\"\"", {path});
+    EXPECT_EQ(content_of(*bag::open_bag(folder.path())).messages.size(), 12U) << path;
+  }
+  write_text(folder / "b.mcap", small_mcap());
+  expect_refusal(folder.path(), "before.mcap: is missing");  // which of the two?
+  fs::create_directory(folder / "in");
+  fs::rename(folder / "a.mcap", folder / "in/a.mcap");
+  fs::rename(folder / "b.mcap", folder / "in/b.mcap");
+  write_metadata(folder / "in", "mcap", {"c.mcap", "../a.mcap"});
+  expect_refusal(folder / "in", "c.mcap: is missing");
 }
 
 TEST(Bag, AFileIsNamedOnce) {

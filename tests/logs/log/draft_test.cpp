@@ -202,7 +202,7 @@ TEST(Draft, WhereNothingIsKnownItListsTheFieldsThatChange) {
 TEST(Draft, TheColumnOfTheTimeMayBeNamed) {
   const log::Table table = table_of("t_bag,u,v,r,n1,n2");
   EXPECT_TRUE(is_open_about(log::draft_of(table), "--time names the column"));
-  EXPECT_EQ(log::draft_of(table, "t_bag").config("log.csv").roles.time, "t_bag");
+  EXPECT_EQ(log::draft_of(table, {.time = "t_bag"}).config("log.csv").roles.time, "t_bag");
 }
 
 TEST(Draft, WhereTwoReadingsAreLikelyItAsks) {

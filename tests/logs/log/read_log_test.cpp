@@ -163,10 +163,16 @@ TEST_F(ReadLog, UnitsThatTheUserGivesAreKnownToTheDraft) {
   };
   for (const std::string time : {"t", "time_ms"}) {
     const std::string file = write("log.csv", text(time));
-    const std::string said =
-        testing::message_of<InputError>([&] { log::read_log({.path = file}, {}, {}); });
-    EXPECT_NE(said.find("--units " + time + "=ms"), std::string::npos) << said;
-    EXPECT_EQ(said.find("derivative of another"), std::string::npos) << said;
+    if (time == "t") {
+      const std::string said =
+          testing::message_of<InputError>([&] { log::read_log({.path = file}, {}, {}); });
+      EXPECT_NE(said.find("--units t=ms"), std::string::npos) << said;
+      EXPECT_EQ(said.find("derivative of another"), std::string::npos) << said;
+    } else {
+      const log::Log log = log::read_log({.path = file}, {}, {});
+      EXPECT_EQ(log.sampling.rate_hz, 25.0);
+      EXPECT_NE(log.losses.find("time_ms: read in ms, as its name tells"), std::string::npos);
+    }
     const log::Log log =
         log::read_log({.path = file}, {}, {.units = {{time, "ms"}, {"u", "knots"}}});
     EXPECT_EQ(log.sampling.rate_hz, 25.0);

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "log/validity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include "core/quantile.hpp"
+#include "core/text.hpp"
+#include "kelpie/core/error.hpp"
+#include "log/known_roles.hpp"
+#include "log/tuning.hpp"
+
+namespace kelpie::log {
+namespace {
+
+constexpr const auto& kValidity = kTuning.validity;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kKeeps = "; --missing none keeps such rows";
+
+bool is_none(const Roles& given) {
+  return std::ranges::count(given.missing, "none") > 0;
+}
+
+bool is_near(double value, double mark) {
+  return std::abs(value - mark) <= kValidity.rounding * std::abs(mark);
+}
+
+std::vector<std::size_t> velocity_columns(const Table& table) {
+  std::vector<std::size_t> found;
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (const auto axis = velocity_by_name(table.names[column]);
+        axis && *axis < 3 && !table.is_of_words(column)) {
+      found.push_back(column);
+    }
+  }
+  return found;
+}
+
+// What a cell of words says of validity; empty: no word for it.
+std::optional<bool> validity_of(std::string word) {
+  constexpr std::array<std::string_view, 10> kValid{"true", "t",  "yes",  "y",    "valid",
+                                                    "ok",   "on", "good", "lock", "a"};
+  constexpr std::array<std::string_view, 11> kInvalid{
+      "false", "f", "no", "n", "invalid", "bad", "off", "lost", "none", "fail", "v"};
+  std::ranges::transform(word, word.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool is_valid = std::ranges::count(kValid, word) > 0;
+  return is_valid || std::ranges::count(kInvalid, word) > 0 ? std::optional(is_valid)
+                                                            : std::nullopt;
+}
+
+using Rows = std::vector<std::size_t>;
+
+// The rows that a column of flags calls invalid; empty: it is no such column.
+Rows flagged_rows(const Table& table, std::size_t column) {
+  const std::optional<Validity> known = validity_by_name(table.names[column]);
+  if (!known) {
+    return {};
+  }
+  Rows rows;
+  const std::vector<double>& values = table.columns[column];
+  std::size_t words = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const bool is_word = table.has_text(column) && words < table.texts[column].words.size() &&
+                         table.texts[column].words[words].first == row;
+    std::optional<bool> is_valid;
+    if (is_word) {
+      is_valid = validity_of(table.texts[column].words[words++].second);
+    } else if (*known == Validity::merit) {
+      is_valid = !(values[row] > kValidity.most_merit);
+    } else if (values[row] == 0.0 || values[row] == 1.0) {
+      is_valid = values[row] == 1.0;
+    } else if (std::isnan(values[row])) {
+      continue;
+    }
+    if (!is_valid) {
+      return {};
+    }
+    if (*is_valid == (*known == Validity::where_0)) {
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+// Rows of exact zeros in all velocities, between rows of a vehicle that moves: nothing stops so.
+Rows zero_rows(const Table& table, const std::vector<std::size_t>& velocities) {
+  std::vector<double> speeds(table.rows());
+  std::vector<double> moving;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (const std::size_t column : velocities) {
+      const double speed = std::abs(table.columns[column][row]);
+      speeds[row] = std::isnan(speed) ? speed : std::max(speeds[row], speed);
+    }
+    if (speeds[row] > 0.0) {
+      moving.push_back(speeds[row]);
+    }
+  }
+  const double jump = moving.empty() || velocities.size() < 2
+                          ? HUGE_VAL
+                          : kValidity.least_jump * quantile(moving, 0.9);
+  Rows rows;
+  for (std::size_t row = 0; row < speeds.size();) {
+    std::size_t end = row;
+    while (end < speeds.size() && speeds[end] == 0.0) {
+      ++end;
+    }
+    const bool jumps =
+        row > 0 && end < speeds.size() && speeds[row - 1] > jump && speeds[end] > jump;
+    for (std::size_t k = row; jumps && end - row >= kValidity.least_zeros && k < end; ++k) {
+      rows.push_back(k);
+    }
+    row = std::max(end, row + 1);
+  }
+  return rows;
+}
+
+std::string names_of(const Table& table, const std::vector<std::size_t>& columns) {
+  std::vector<std::string> names;
+  for (const std::size_t column : columns) {
+    names.push_back(table.names[column]);
+  }
+  return join_text(names, ", ");
+}
+
+// Without the rows' velocities. Returns the line about it.
+std::string drop(Table& table, const std::vector<std::size_t>& columns, const Rows& rows,
+                 const std::string& why) {
+  for (const std::size_t column : columns) {
+    for (const std::size_t row : rows) {
+      table.columns[column][row] = kNone;
+    }
+  }
+  if (rows.size() == table.rows()) {
+    throw InputError({.file = table.source},
+                     "no velocity was measured: " + why + " in every row. Nothing can be learned");
+  }
+  return fmt::format("{}: {} in {} {}, the first on line {}: {} not measured there{}\n",
+                     table.source, why, rows.size(), rows.size() == 1 ? "row" : "rows",
+                     table.lines[rows.front()],
+                     names_of(table, columns) + (columns.size() == 1 ? " is" : " are"), kKeeps);
+}
+
+std::string drop_marks(Table& table, std::size_t column) {
+  const std::optional<double> mark = mark_of_none(table.columns[column]);
+  Rows rows;
+  for (std::size_t row = 0; mark && row < table.rows(); ++row) {
+    if (is_near(table.columns[column][row], *mark)) {
+      rows.push_back(row);
+    }
+  }
+  return rows.empty() ? ""
+                      : drop(table, {column}, rows,
+                             fmt::format("{}: {:g}, a sensor's mark of no value,",
+                                         table.names[column], *mark));
+}
+
+}  // namespace
+
+std::vector<MissingValue> missing_values(const Roles& given) {
+  std::vector<MissingValue> found;
+  for (const std::string& text : given.missing) {
+    const std::size_t sign = text.rfind('=');
+    MissingValue one{.column = sign == std::string::npos ? "" : text.substr(0, sign)};
+    if (text == "none") {
+      continue;
+    }
+    if (!parse_number(text.substr(sign == std::string::npos ? 0 : sign + 1), one.value)) {
+      throw InputError("--missing", "'" + text + "' is no number; write -999, u=-999, or none");
+    }
+    found.push_back(one);
+  }
+  return found;
+}
+
+std::optional<double> mark_of_none(std::span<const double> values) {
+  constexpr std::array<double, 11> kMarks{-32.768, 32.767, -32768, 32767,   -999, 999,
+                                          -9999,   9999,   -99999, -327.68, 99999};
+  double farthest = 0.0;
+  for (const double value : values) {
+    if (std::isfinite(value) && std::abs(value) > std::abs(farthest)) {
+      farthest = value;
+    }
+  }
+  double next = 0.0;
+  std::size_t count = 0;
+  std::size_t finite = 0;
+  for (const double value : values) {
+    const bool is_one = std::isfinite(value) && is_near(value, farthest);
+    count += is_one ? 1 : 0;
+    finite += std::isfinite(value) ? 1 : 0;
+    next = std::isfinite(value) && !is_one ? std::max(next, std::abs(value)) : next;
+  }
+  const bool is_known = std::ranges::any_of(
+      kMarks, [&](double mark) { return std::abs(farthest) > 0.0 && is_near(farthest, mark); });
+  const bool is_far = count < finite && next > 0.0 && std::abs(farthest) > kValidity.far * next;
+  return is_far && (is_known || count >= kValidity.least_marks) ? std::optional(farthest)
+                                                                : std::nullopt;
+}
+
+std::string drop_missing(Table& table, const Roles& given) {
+  for (const MissingValue& missing : missing_values(given)) {
+    if (!missing.column.empty()) {
+      table.find(missing.column);
+    }
+    for (std::size_t column = 0; column < table.names.size(); ++column) {
+      if (missing.column.empty() || missing.column == table.names[column]) {
+        std::ranges::replace(table.columns[column], missing.value, kNone);
+      }
+    }
+  }
+  const std::vector<std::size_t> velocities = velocity_columns(table);
+  if (is_none(given) || velocities.empty()) {
+    return "";
+  }
+  std::string told;
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (const Rows rows = flagged_rows(table, column); !rows.empty()) {
+      told += drop(table, velocities, rows, table.names[column] + " calls velocities invalid");
+    }
+    told += velocity_by_name(table.names[column]) ? drop_marks(table, column) : "";
+  }
+  if (const Rows rows = zero_rows(table, velocities); !rows.empty()) {
+    told += drop(table, velocities, rows,
+                 names_of(table, velocities) + ": exact zeros between rows of a moving vehicle");
+  }
+  return told;
+}
+
+}  // namespace kelpie::log

@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a log says by itself: its clock, its roles, its validity, its frames; each kind at the door
+// of `kelpie learn`.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bag/mcap_writer.hpp"
+#include "bag/message_builder.hpp"
+#include "cli/command.hpp"
+
+namespace kelpie::log_meaning_test {
+namespace {
+
+using testing::Outcome;
+
+// A row of the log: two minutes of a boat with two thrusters, at 5 Hz.
+struct Row {
+  int k = 0;
+  double t = 0.0;
+  double u = 0.0, v = 0.0, r = 0.0;
+  double n1 = 0.0, n2 = 0.0;
+  double x = 0.0, y = 0.0, psi = 0.3;
+};
+
+std::vector<Row> drive(double step_s, int rows) {
+  std::vector<Row> all;
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::normal_distribution<double> normal(0.0, 0.002);
+  Row now;
+  double until_s = 0.0;
+  for (; now.k < rows; ++now.k) {
+    if (now.t >= until_s) {
+      now.n1 = uniform(random);
+      now.n2 = uniform(random);
+      until_s = now.t + 2.5 + 1.5 * uniform(random);
+    }
+    all.push_back(now);
+    all.back().u += normal(random);
+    all.back().v += normal(random);
+    all.back().r += normal(random);
+    const double port = now.n1 * std::abs(now.n1);
+    const double starboard = now.n2 * std::abs(now.n2);
+    now.x += step_s * (now.u * std::cos(now.psi) - now.v * std::sin(now.psi));
+    now.y += step_s * (now.u * std::sin(now.psi) + now.v * std::cos(now.psi));
+    now.psi += step_s * now.r;
+    const double u = now.u;
+    now.u += step_s * (0.6 * (port + starboard) - 0.5 * u - 0.8 * u * std::abs(u) + now.v * now.r);
+    now.v += step_s * (-0.8 * now.v - 0.6 * u * now.r);
+    now.r += step_s * (0.9 * (starboard - port) - 1.1 * now.r);
+    now.t += step_s;
+  }
+  return all;
+}
+
+using Cell = std::function<std::string(const Row&)>;
+using Columns = std::vector<std::pair<std::string, Cell>>;
+
+Cell number(double Row::*member, double scale = 1.0) {
+  return [=](const Row& row) { return fmt::format("{:.8g}", scale * row.*member); };
+}
+
+const Columns kBoat{{"u", number(&Row::u)},
+                    {"v", number(&Row::v)},
+                    {"r", number(&Row::r)},
+                    {"n1", number(&Row::n1)},
+                    {"n2", number(&Row::n2)}};
+
+std::string log_of(const Columns& columns, const std::string& separator = ",", double step_s = 0.2,
+                   int rows = 600) {
+  std::string text;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    text += (k > 0 ? separator : "") + columns[k].first;
+  }
+  text += "\n";
+  for (const Row& row : drive(step_s, rows)) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      text += (k > 0 ? separator : "") + columns[k].second(row);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+// The boat with a column of time before, and further columns behind.
+std::string boat(const std::string& time, const Cell& cell, const Columns& more = {}) {
+  Columns columns{{time, cell}};
+  columns.insert(columns.end(), kBoat.begin(), kBoat.end());
+  columns.insert(columns.end(), more.begin(), more.end());
+  return log_of(columns);
+}
+
+// The number of the row as a time of day, beginning so many seconds after midnight.
+std::string clock(int k, double begin_s) {
+  const double s = begin_s + 0.2 * k;
+  const int whole = static_cast<int>(s);
+  return fmt::format("{:02d}:{:02d}:{:04.1f}", whole / 3600 % 24, whole / 60 % 60,
+                     std::fmod(s, 60.0));
+}
+
+struct Case {
+  std::string log;
+  std::string options;
+  int exit_code = 0;
+  std::string message;  // on stdout or stderr
+};
+
+class LogMeaning : public testing::CommandTest {
+ protected:
+  void expect(const std::vector<Case>& cases) {
+    for (const Case& one : cases) {
+      write("log.csv", one.log);
+      const Outcome outcome = run(
+          "learn log.csv --align none --set preset=paper --set buffer=50 --out out " + one.options);
+      const std::string head = one.log.substr(0, one.log.find('\n', one.log.find('\n') + 1));
+      EXPECT_EQ(outcome.exit_code, one.exit_code) << head << "\n" << outcome.err;
+      EXPECT_NE((outcome.out + outcome.err).find(one.message), std::string::npos)
+          << one.message << "\nof: " << head << " " << one.options << "\n"
+          << outcome.out << outcome.err;
+    }
+  }
+};
+
+constexpr const char* kTwoMinutes = "(2 min at 5 Hz)";
+
+TEST_F(LogMeaning, TimeInWords) {
+  const auto words = [](const std::string& text, double begin_s) {
+    return [=](const Row& row) { return text + clock(row.k, begin_s); };
+  };
+  expect({
+      {boat("Time", [](const Row& row) { return fmt::format("{:.5g} sec", row.t); }), "", 0,
+       kTwoMinutes},
+      {boat("Time", words("", 47220.0)), "", 0, kTwoMinutes},
+      {boat("Time", words("", 86390.0)), "", 0, kTwoMinutes},
+      {boat("Time", words("01-May-2023 ", 0.0)), "", 0, kTwoMinutes},
+      {boat("Time", words("1 days ", 0.0)), "", 0, kTwoMinutes},
+      {boat("time", words("01/20/2021 ", 0.0)), "", 0, kTwoMinutes},
+      {boat("time", words("20.01.2021 ", 0.0)), "", 0, kTwoMinutes},
+      {boat("time", words("01/02/2021 ", 0.0)), "", 2,
+       "time holds '01/02/2021 00:00:00.0', which may have the day or the month first"},
+      {boat("Time", [](const Row& row) { return fmt::format("tick {}", row.k); }), "", 2,
+       "Time holds 'tick 0' (line 2): times are read in s"},
+      {boat("Time", [](const Row& row) { return fmt::format("tick {}", row.k); }), "--rate 5", 0,
+       kTwoMinutes},
+  });
+}
+
+TEST_F(LogMeaning, TimeInNumbers) {
+  const auto of = [](double scale, double begin, int most_digits) {
+    return
+        [=](const Row& row) { return fmt::format("{:.{}f}", begin + scale * row.k, most_digits); };
+  };
+  const auto folded = [](double end) {
+    return
+        [=](const Row& row) { return fmt::format("{:.1f}", std::fmod(end - 60.0 + row.t, end)); };
+  };
+  const auto an_hour_back = [](const Row& row) {
+    return "2021-10-31 " + clock(row.k, row.k < 300 ? 10740.0 : 7140.0);
+  };
+  expect({
+      {boat("timestamp", of(200.0, 1.7e12, 0)), "", 0, "timestamp: read in ms, as its size tells"},
+      {boat("%time", of(2e8, 1.7e18, 0)), "", 0, kTwoMinutes},
+      {boat("Time", of(0.2 / 86400.0, 45047.5, 10)), "", 0, kTwoMinutes},
+      {boat("Time", of(0.2 / 86400.0, 738000.0, 10)), "", 0, kTwoMinutes},
+      {boat("time_ms", of(200.0, 0.0, 0)), "", 0, kTwoMinutes},
+      {boat("time", of(0.2 / 86400.0, 0.0, 10)), "--units time=d", 0, kTwoMinutes},
+      {boat("time", of(200.0, 0.0, 0)), "", 2, "--units time=ms says that it is in ms"},
+      {boat("Time", folded(86400.0)), "", 2,
+       "time runs backwards, from 86399.8 (line 301) to 0 s; a midnight?"},
+      {boat("gps_tow", folded(604800.0)), "", 2, "a new week of GPS?"},
+      {boat("time", an_hour_back), "", 2, "an hour, as at the end of summer time?"},
+  });
+  // Milliseconds since the boot count as whole seconds of a vehicle that hardly moves.
+  Columns fast{{"time", [](const Row& row) { return std::to_string(5 * row.k); }}};
+  fast.insert(fast.end(), kBoat.begin(), kBoat.end());
+  const std::string at_200_hz = log_of(fast, ",", 0.005, 12000);
+  expect(
+      {{at_200_hz, "", 2, "one row each 5 s, in which velocities hardly change: --units time=ms"},
+       {at_200_hz, "--units time=ms", 0, "(48 s at 16 Hz)"}});
+  fast[0].second = [](const Row& row) { return std::to_string(row.k); };
+  expect({{log_of(fast, ",", 1.0 / 3.0, 400), "", 0, "at 1 Hz"}});
+}
+
+TEST_F(LogMeaning, TimeByOption) {
+  const std::string zeit = boat("Uhr", number(&Row::t));
+  expect({{zeit, "", 2, "--time names the column, or --rate gives the rows per second"},
+          {zeit, "--time Uhr", 0, kTwoMinutes},
+          {log_of(kBoat), "--rate 5", 0, kTwoMinutes}});
+  const Outcome looked = testing::succeeded(run("inspect log.csv --rate 5 --template t.toml"));
+  EXPECT_NE(looked.out.find("5 rows per second"), std::string::npos) << looked.out;
+  for (const std::string command :
+       {"learn log.csv --config t.toml", "identify log.csv --rate 5",
+        "tune log.csv --rate 5 --trials 1 --quick", "live --replay log.csv --rate 5 --speed max"}) {
+    const Outcome outcome = run(command + " --out of_rate");
+    EXPECT_EQ(outcome.err.find("time"), std::string::npos) << command << "\n" << outcome.err;
+  }
+}
+
+TEST_F(LogMeaning, TablesOfOtherPrograms) {
+  const Columns timed = [] {
+    Columns columns{{"t", number(&Row::t)}};
+    columns.insert(columns.end(), kBoat.begin(), kBoat.end());
+    return columns;
+  }();
+  const std::string commas = log_of(timed);
+  const std::string blanks = log_of(timed, " ");
+  std::string mixed = commas;
+  std::ranges::replace(mixed.begin() + 14, mixed.end(), ',', ';');
+  expect({
+      {"# " + commas, "", 0, kTwoMinutes},
+      {"% a boat\n% " + commas, "", 0, kTwoMinutes},
+      {"# " + blanks, "", 0, kTwoMinutes},
+      {log_of(timed, "   "), "", 0, kTwoMinutes},
+      {"# t,u,v\n" + commas.substr(commas.find('\n') + 1), "", 2,
+       "it has to name the columns, as in u,v,r, or as many as the row has cells (6)"},
+      {mixed, "", 2, "1 cells in this row; the header has 6: they are separated by ';'"},
+      {"t,u,n\n0,2,0,1,0,3\n", "", 2, "decimal commas? Separate cells by ';'"},
+      {commas + commas, "", 2, "log.csv:602: is the header again: two logs in one file?"},
+      {"<!DOCTYPE html>\n", "", 2, "is HTML or XML"},
+      {"{\"format\": 1}\n", "", 2, "a model of `kelpie learn` is taken by --model or --from"},
+      {"\xFF\xD8\xFF\xE0", "", 2, "is a picture (JPEG)"},
+  });
+}
+
+TEST_F(LogMeaning, RolesByReason) {
+  const auto noise = [](double rate) {
+    return [=](const Row& row) { return fmt::format("{:.4f}", 40.0 + std::sin(rate * row.k)); };
+  };
+  const auto with = [&](const std::string& names) {
+    Columns more;
+    for (const std::string& name : testing::words_of(names)) {
+      more.emplace_back(name, noise(1.0 + 0.1 * static_cast<double>(more.size())));
+    }
+    return boat("t", number(&Row::t), more);
+  };
+  const std::string commands = "commands: n1, n2\n";
+  expect({
+      {with("T_motor m_nb_sat motor_controller_humidity usv_control/sast/x_gain az_mps2 "
+            "thruster_manager/rssi motor_driver/board/leak control/reference/heading n_sats"),
+       "", 0, commands},
+      {with("m_depth m_pitch m_vacuum"), "", 0, commands},
+      {with("thr_ref1 motor_aft/cmd"), "", 0, "commands: motor_aft_cmd, n1, n2, thr_ref1\n"},
+  });
+  // Beside accelerations every column may be an input, but no other value of a velocity or command.
+  std::vector<Row> rows = drive(0.2, 600);
+  const auto slope = [&](double Row::*of) {
+    return [&rows, of](const Row& row) {
+      const auto k = static_cast<std::size_t>(std::clamp(row.k, 1, 598));
+      return fmt::format("{:.6f}", (rows[k + 1].*of - rows[k - 1].*of) / 0.4);
+    };
+  };
+  const auto next = [&](const Row& row) {
+    return fmt::format("{:.6f}", rows[static_cast<std::size_t>(std::min(row.k + 1, 599))].u);
+  };
+  const std::string ready = boat("t", number(&Row::t),
+                                 {{"udot", slope(&Row::u)},
+                                  {"rdot", slope(&Row::r)},
+                                  {"true_udot", slope(&Row::u)},
+                                  {"tv_u", number(&Row::u)},
+                                  {"u_next", next},
+                                  {"later", next},
+                                  {"act_n1", number(&Row::n1, 0.9)},
+                                  {"x_gain", noise(1.0)},
+                                  {"wave", noise(1.1)}});
+  expect({{ready, "", 0, "commands: n1, n2, wave\n"},
+          {ready, "", 0, "u_next: is left out of the inputs: u of another row; --inputs takes it"},
+          {ready, "", 0, "later: is left out of the inputs: goes with u, read 1 rows later"}});
+}
+
+TEST_F(LogMeaning, VelocitiesThatAreNotMeasured) {
+  const auto is_out = [](const Row& row) { return row.k % 150 > 120; };
+  const auto unless = [=](double Row::*of, const std::string& mark) {
+    return [=](const Row& row) { return is_out(row) ? mark : fmt::format("{:.6f}", row.*of); };
+  };
+  const auto log = [&](const std::string& mark, const Columns& more = {}) {
+    Columns columns{{"t", number(&Row::t)},       {"u", unless(&Row::u, mark)},
+                    {"v", unless(&Row::v, mark)}, {"r", number(&Row::r)},
+                    {"n1", number(&Row::n1)},     {"n2", number(&Row::n2)}};
+    columns.insert(columns.end(), more.begin(), more.end());
+    return log_of(columns);
+  };
+  const auto flag = [&](const std::string& valid, const std::string& invalid) {
+    return [=](const Row& row) { return is_out(row) ? invalid : valid; };
+  };
+  const std::string held = "0.01";  // a value that nothing but the flag tells from a measurement
+  expect({
+      {log(held, {{"velocity_valid", flag("1", "0")}}), "", 0,
+       "velocity_valid calls velocities invalid in 116 rows, the first on line 123: u, v are not"},
+      {log(held, {{"bottom_lock", flag("True", "False")}}), "", 0,
+       "calls velocities invalid in 116"},
+      {log(held, {{"dvl_invalid", flag("0", "1")}}), "", 0, "calls velocities invalid in 116"},
+      {log(held, {{"fom", flag("0.002", "9.9")}}), "", 0, "calls velocities invalid in 116"},
+      {log("-32.768"), "", 0, "u: -32.768, a sensor's mark of no value, in 116 rows"},
+      {log("-999"), "", 0, "v: -999, a sensor's mark of no value, in 116 rows"},
+      {log("77.7"), "", 0, "u: 77.7, a sensor's mark of no value, in 116 rows"},
+      {log("0"), "", 0, "exact zeros between rows of a moving vehicle in"},
+      {log("-999"), "--missing none", 0, "R²"},
+      {log("0.5"), "--missing u=0.5,v=0.5", 0, "R²"},
+      {log("0.5"), "--missing u=half", 2, "'u=half' is no number; write -999, u=-999, or none"},
+      {log(held, {{"velocity_valid", [](const Row&) { return "0"; }}}), "", 2,
+       "no velocity was measured: velocity_valid calls velocities invalid in every row"},
+  });
+}
+
+TEST_F(LogMeaning, VelocitiesBesidePoses) {
+  const auto turned = [](double angle, bool is_of_u) {
+    return [=](const Row& row) {
+      const double own = is_of_u ? std::cos(angle) * row.u - std::sin(angle) * row.v
+                                 : std::sin(angle) * row.u + std::cos(angle) * row.v;
+      return fmt::format("{:.6f}", own);
+    };
+  };
+  const auto of_world = [](bool is_of_x) {
+    return [=](const Row& row) {
+      const double own = is_of_x ? std::cos(row.psi) * row.u - std::sin(row.psi) * row.v
+                                 : std::sin(row.psi) * row.u + std::cos(row.psi) * row.v;
+      return fmt::format("{:.6f}", own);
+    };
+  };
+  const auto log = [](const Cell& u, const Cell& v, const Cell& r) {
+    return log_of({{"t", number(&Row::t)},
+                   {"x", number(&Row::x)},
+                   {"y", number(&Row::y)},
+                   {"psi", number(&Row::psi)},
+                   {"u", u},
+                   {"v", v},
+                   {"r", r},
+                   {"n1", number(&Row::n1)},
+                   {"n2", number(&Row::n2)}});
+  };
+  const Cell u = number(&Row::u);
+  const Cell v = number(&Row::v);
+  const Cell r = number(&Row::r);
+  expect({
+      {log(u, v, r), "", 0, kTwoMinutes},
+      {log(of_world(true), of_world(false), r), "", 2,
+       "u and v are velocities along the axes of the world, not of the vehicle"},
+      {log(of_world(true), of_world(false), r), "--pose x,y,psi", 0, "R²"},
+      {log(of_world(true), of_world(false), r), "--accept implausible", 0, kTwoMinutes},
+      {log(number(&Row::u, 100.0), number(&Row::v, 100.0), r), "", 2, "--units u=cm/s,v=cm/s"},
+      {log(number(&Row::u, 100.0), number(&Row::v, 100.0), r), "--units u=cm/s,v=cm/s", 0,
+       kTwoMinutes},
+      {log(u, v, number(&Row::r, -1.0)), "", 2, "r has the sign opposite to the slope of psi"},
+      {log(u, v, number(&Row::r, 57.29578)), "", 2, "--units r=deg/s converts"},
+      {log(v, u, r), "", 2, "u and v are exchanged"},
+      {log(turned(0.7854, true), turned(0.7854, false), r), "", 0,
+       "the ways between poses lie -45 degrees beside u and v"},
+  });
+}
+
+// The boat as a recording: a message of `type` on `topic`, the thrusters, and `others`.
+using Fill = std::function<void(bag::MessageBuilder&, const Row&)>;
+
+std::string recording(const std::string& topic, const std::string& type, const Fill& fill,
+                      const std::vector<std::string>& others = {}) {
+  const bag::MessageDefinitions definitions;
+  bag::McapWriter writer;
+  std::vector<bag::MessageBuilder> builders;
+  std::vector<std::string> names{topic, "/thrusters/left", "/thrusters/right"};
+  names.insert(names.end(), others.begin(), others.end());
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string own = k == 0 ? type : "std_msgs/msg/Float64";
+    writer.add_topic({.name = names[k], .type = own, .definition = definitions.full_text(own)});
+    builders.emplace_back(definitions.type(own));
+  }
+  for (const Row& row : drive(0.2, 600)) {
+    const auto time_ns = static_cast<std::int64_t>(1e9 * row.t);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (k == 0) {
+        fill(builders[k], row);
+      } else {
+        builders[k].set("data", k == 1 ? row.n1 : k == 2 ? row.n2 : std::sin(row.t));
+      }
+      writer.write({.topic = k,
+                    .receive_ns = time_ns,
+                    .publish_ns = time_ns,
+                    .sequence = static_cast<std::uint32_t>(row.k),
+                    .data = builders[k].bytes()});
+    }
+  }
+  return writer.take() + writer.finish();
+}
+
+TEST_F(LogMeaning, Recordings) {
+  const Fill dvl = [](bag::MessageBuilder& message, const Row& row) {
+    const bool is_valid = row.k % 150 < 120;
+    message.set("velocity.x", is_valid ? row.u : 0.01);
+    message.set("velocity.y", is_valid ? row.v : 0.01);
+    message.set("velocity_valid", is_valid ? 1.0 : 0.0);
+  };
+  const Fill odometry = [](bag::MessageBuilder& message, const Row& row) {
+    message.set("pose.pose.position.x", row.x);
+    message.set("pose.pose.position.y", row.y);
+    message.set("pose.pose.orientation.w", std::cos(row.psi / 2.0));
+    message.set("pose.pose.orientation.z", std::sin(row.psi / 2.0));
+    message.set("twist.twist.linear.x", row.u);
+    message.set("twist.twist.linear.y", row.v);
+    message.set("twist.twist.angular.z", row.r);
+  };
+  const Fill of_world = [&](bag::MessageBuilder& message, const Row& row) {
+    odometry(message, row);
+    message.set("twist.twist.linear.x", std::cos(row.psi) * row.u - std::sin(row.psi) * row.v);
+    message.set("twist.twist.linear.y", std::sin(row.psi) * row.u + std::cos(row.psi) * row.v);
+  };
+  const std::string commands = "commands: left, right\n";
+  expect({
+      {recording("/dvl/data", "dvl_msgs/msg/DVL", dvl), "", 0,
+       "120 of 600 messages are no measurement of u"},
+      {recording("/odom", "nav_msgs/msg/Odometry", odometry,
+                 {"/usv_control/sast/y_sigma", "/motor_driver/board/humidity",
+                  "/thruster_manager/rssi", "/control/reference/heading"}),
+       "", 0, commands},
+      {recording("/boat/odometry", "nav_msgs/msg/Odometry", of_world), "", 0, commands},
+  });
+  testing::succeeded(run("inspect log.csv --template world.toml"));
+  EXPECT_NE(content("world.toml").find("from = \"ENU\", to = \"FLU\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kelpie::log_meaning_test
