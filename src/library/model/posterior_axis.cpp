@@ -526,9 +526,9 @@ void PosteriorAxis::visit(Archive& archive) {
   if (has_scale_) {
     scaling_.visit(archive, features_.units().dimension(), terms().size());
     archive.part("mixture", mixture_);
-    for (double* const one : {&mean_, &certain_.low, &certain_.high}) {
-      archive.number(*one);
-    }
+    archive.number(mean_);
+    archive.any_number(certain_.low);
+    archive.any_number(certain_.high);
     if (archive.loading()) {
       assign_members();
     }

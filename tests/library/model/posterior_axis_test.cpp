@@ -623,6 +623,9 @@ TEST(PosteriorLearner, BeginsWithAKnownVehicle) {
   std::array<double, 2> said{};
   known.predict(ahead, said);
   EXPECT_NEAR(said[0], PlanarDrive::accelerations(ahead)[0], 0.2);
+  std::array<double, 2> later{};
+  DynamicsModel::resume(make(1.0), known.save()).predict(ahead, later);
+  EXPECT_EQ(said, later);
   learn(wrong, drive, 70, drive.x.size());
   EXPECT_LT(error_elsewhere(wrong), 0.08);
 }
