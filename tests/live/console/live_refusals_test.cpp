@@ -36,7 +36,7 @@ TEST_F(LiveCommand, BadInputIsRefusedBeforeAnythingStarts) {
   expect_refused("--config no.toml --from mission.mcap", "no.toml");
   expect_refused("--config /dev/zero --from mission.mcap", "/dev/zero: is a device; ");
   expect_refused("--replay /dev/zero", "/dev/zero: is a device; ");
-  expect_refused("--config x.toml --from x.toml", "x.toml:4: after a closing quote");  // no table
+  expect_refused("--config x.toml --from x.toml", "x.toml:3: 1 cells in this row");  // no table
   for (const std::string speed : {"fast", "-1", "0", "-0.0", "nan", "inf", "1e18", "1e-300"}) {
     expect_refused(from + "--speed " + speed,
                    "--speed: '" + speed + "' has to be a number from 0.001 to 1e+06, or max");
