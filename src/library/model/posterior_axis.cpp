@@ -191,13 +191,15 @@ void PosteriorAxis::apply_change(std::span<const CommandGain> gains, std::span<c
       told[k] = (term_gain(terms(), k - 1, gains) - 1.0) * weight;
     }
   }
+  double kept = kAll;
   if (news.changed) {
+    kept = kPosterior.kept;
     past_.leave(posterior_, news.changed_since, features_.groups());
     screen_.believe_change(news.changed_since);
   } else if (news.withdrawn) {
     past_.come_back();
   }
-  tell_anew(as_span(told), told, news.changed ? kPosterior.kept : kAll);
+  tell_anew(as_span(told), told, kept);
 }
 
 // `step`: of the weights; `first`: of the weights of the terms alone, which the targets of the
