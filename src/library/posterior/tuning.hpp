@@ -34,17 +34,15 @@ inline constexpr struct PosteriorTuning {
   /// Shares of posterior, terms, svr and mean before the first losses; by hand.
   std::array<double, 4> first_shares{0.3, 0.4, 0.15, 0.15};
   std::array<double, 4> first_shares_of_known{0.45, 0.45, 0.05, 0.05};  ///< likewise
-  double certain =
-      3.0;  ///< standard errors of an effect that count as unknown; lab/random_vehicles.py
+  double certain = 3.0;          ///< standard errors of an effect; chosen on lab/random_vehicles.py
   double block = 2.0;            ///< independent samples of a block of losses; by hand
   int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand
   std::int64_t slice = 300'000;  ///< numbers of a solve in one update; by hand
   double outgrown = 1.5;         ///< growth of an input's deviation that moves the kernel; by hand
-  double least_samples =
-      80.0;            ///< independent, of all rows; from 20 to 300 on lab/random_vehicles.py
-  double usual = 4.0;  ///< times the usual surprise that a row counts, at most; by hand
-  double least_usual = 0.25;  ///< likewise, of the usual surprise; by hand
-  double unexplained = 0.8;   ///< share of the target's variance by which nothing is known; by hand
+  double least_samples = 80.0;   ///< independent, of all rows; chosen on lab/random_vehicles.py
+  double usual = 4.0;            ///< times the usual surprise that a row counts, at most; by hand
+  double least_usual = 0.25;     ///< likewise, of the usual surprise; by hand
+  double unexplained = 0.8;  ///< share of the target's variance by which nothing is known; by hand
   double most_unknown = 20.0;  ///< s² of a row that waits, in variances of the target; by hand
   double set_off = 1e3;        ///< s² at which a vehicle at rest sets off, likewise; by hand
   double far = 10.0;           ///< deviations of a velocity beyond which a row counts less; by hand

@@ -315,6 +315,12 @@ const std::vector<KnownWord>& known_command_words() {
   return all;
 }
 
+bool is_command_word(std::string_view word) {
+  return std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
+    return is_among_words(known.word, word);
+  });
+}
+
 std::span<const KnownAffix> known_affixes() {
   return kAffixes;
 }
@@ -443,9 +449,7 @@ std::string why_no_command(std::string_view name) {
   last.push_back(join_text(last, "_"));  // u_heading
   const bool is_of_slocum = words.size() > 1 && words.front() == "c";
   const auto is_command = [&](const std::string& word) {
-    return is_of_slocum || std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
-             return is_among_words(known.word, word);
-           });
+    return is_of_slocum || is_command_word(word);
   };
   const bool has_command = std::ranges::any_of(last, is_command);
   last.pop_back();

@@ -48,6 +48,7 @@ struct KnownWord {
 /// The known messages: of each part of a topic the first match counts.
 std::span<const KnownMessage> known_messages();
 const std::vector<KnownWord>& known_command_words();
+bool is_command_word(std::string_view word);  ///< One of these, numbered or not.
 /// Why a signal of this name is no input of a model, as far as the name alone tells: "a counter",
 /// "a measurement, no command"; "": it may be one.
 std::string why_no_input(std::string_view name);

@@ -148,16 +148,6 @@ std::string reason_by_affix(const Table& table, const std::string& name) {
   return "";
 }
 
-// Whether a word of the name is one of commands, numbered or not.
-bool has_command_word(std::string_view name) {
-  return std::ranges::any_of(words_of(name), [](const std::string& word) {
-    const std::string stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
-    return std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
-      return known.word == word || known.word == stem + "#";
-    });
-  });
-}
-
 // Of a column whose name is no command's and that nearly copies a velocity or target, perhaps some
 // rows later or earlier, what it copies.
 std::string near_copy_of(const Table& table, std::size_t column, const Roles& roles) {
@@ -168,7 +158,8 @@ std::string near_copy_of(const Table& table, std::size_t column, const Roles& ro
   constexpr std::ptrdiff_t kFewRows = 100;
   const std::string& name = table.names[column];
   const std::span<const double> values = values_of(table, column);
-  if (has_command_word(name) || velocity_by_name(name) || std::ssize(values) < kFewRows) {
+  if (std::ranges::any_of(words_of(name), is_command_word) || velocity_by_name(name) ||
+      std::ssize(values) < kFewRows) {
     return "";
   }
   std::string copied;

@@ -81,6 +81,9 @@ TEST_F(From, BothFilesGoOnUnderAnotherLog) {
       EXPECT_EQ(result("next")["settings"]["buffer"], 100);
       EXPECT_EQ(result("next")["settings"]["learner"], learner);
       EXPECT_LT(1.0 - early_r2("next"), 0.5 * (1.0 - early_r2("alone"))) << learner << ", " << file;
+      if (learner == "committee") {  // the posterior alone has 0.9988 by then
+        EXPECT_GT(early_r2("next"), early_r2("alone") + 0.002) << file;
+      }
       EXPECT_TRUE(exists("next/model.json"));
     }
     EXPECT_TRUE(result("alone")["from"].is_null());
