@@ -50,8 +50,11 @@ void StudyOutput::write(const file::OutFolder& taken, const StudyReport& report)
     file::write_files_whole(taken.path(), {{name + ".json", report.json}});
     cli::say("{}numbers: {}\npicture: lab/plot.py {}\n", report.table, numbers, numbers);
   } else {
-    file::write_files_whole(taken.path(),
-                            {{name + ".html", report.html}, {name + ".json", report.json}});
+    file::FileSet files{{name + ".html", report.html}, {name + ".json", report.json}};
+    if (!report.markdown.empty()) {
+      files[name + ".md"] = report.markdown;
+    }
+    file::write_files_whole(taken.path(), files);
     cli::say("{}page:    {}\nnumbers: {}\n", report.table,
              (taken.path() / (name + ".html")).string(), numbers);
   }

@@ -28,6 +28,7 @@ void add_diagnose(CLI::App& app);
 void add_health(CLI::App& app);
 void add_hostile(CLI::App& app);
 void add_identify(CLI::App& app);
+void add_opponents(CLI::App& app);
 void add_plan(CLI::App& app);
 void add_reproduce(CLI::App& app);
 
@@ -70,9 +71,10 @@ auto run_watched(const char* name, Study study, bool partial = false) {
 
 /// The results of a study.
 struct StudyReport {
-  std::string table;   ///< for the terminal
-  std::string json{};  ///< for programs and lab/plot.py
-  std::string html{};  ///< a page, or empty
+  std::string table;       ///< for the terminal
+  std::string json{};      ///< for programs and lab/plot.py
+  std::string html{};      ///< a page, or empty
+  std::string markdown{};  ///< the page for docs/, or empty
 };
 
 /// The files and the progress bar of a study.

@@ -3,21 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
-#include <span>
-#include <utility>
 
+#include "core/text.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/learner/recursive_least_squares.hpp"
+#include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "lab/sparse_online_svr.hpp"
+#include "model/axis_list.hpp"
 #include "model/guarded_axis.hpp"
 
 namespace kelpie::lab {
 namespace {
-
-// To follow a change a learner has to forget: about 1,000 samples of memory.
-constexpr double kLambda = 0.999;
 
 // SOSVR wants scaled samples, and stays in the scale that it began with.
 class ScaledSosvr final : public Scaled {
@@ -33,6 +32,36 @@ class ScaledSosvr final : public Scaled {
   SparseOnlineSvr learner_;
 };
 
+// A regressor for every target of a log, made by make(axis, scaling).
+template <typename Make>
+std::unique_ptr<OnlineModel> axis_list(const log::Dataset& data,
+                                       std::span<const AxisScaling> scales, const Make& make) {
+  std::vector<std::unique_ptr<OnlineRegressor>> axes;
+  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
+    axes.push_back(make(axis, scales.empty() ? std::nullopt : std::optional(scales[axis])));
+  }
+  return std::make_unique<AxisList>(std::move(axes));
+}
+
+std::unique_ptr<OnlineRegressor> online_svr(const log::Dataset& data, std::size_t axis,
+                                            const ModelSettings& settings,
+                                            std::optional<AxisScaling> scaling) {
+  const TermSet terms =
+      TermSet::from(settings.shared.terms, data.input_names, settings.axes.size());
+  return std::make_unique<GuardedAxis>(data.input_names.size(), settings.shared,
+                                       settings.axes.at(axis), terms, std::move(scaling));
+}
+
+SparseOnlineSvrSettings sosvr_settings(int dictionary, const NamedValues& values) {
+  SparseOnlineSvrSettings settings;
+  settings.dictionary = dictionary;
+  for (const auto& [name, value] : values) {
+    std::ranges::find(sparse_online_svr_fields(), name, &Setting<SparseOnlineSvrSettings>::name)
+        ->assign(settings, value);
+  }
+  return settings;
+}
+
 template <typename Settings>
 std::string text_of(std::span<const Setting<Settings>> fields, const Settings& settings) {
   std::string text;
@@ -42,55 +71,113 @@ std::string text_of(std::span<const Setting<Settings>> fields, const Settings& s
   return text;
 }
 
-// The paper's learner alone, with the default preset's values and Fossen's terms.
-ModelSettings paper_learner(std::size_t axes) {
-  ModelSettings settings = ModelSettings::from_preset("default", axes);
-  settings.assign("learner", "svr");
-  settings.assign("terms", "fossen");
-  settings.assign("warmup", "200");
+std::string text_of(const ModelSettings& settings) {
+  settings.validate();
+  std::string text;
+  for (const auto& [name, value] : settings.values()) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value);
+  }
+  return text;
+}
+
+constexpr int kBuffer = 900;  // of Table I
+
+ModelSettings with(ModelSettings settings, const NamedValues& values) {
+  for (const auto& [name, value] : values) {
+    settings.assign(name, value);
+  }
   return settings;
 }
 
-Contender committee_contender(std::size_t axes) {
-  return online_svr_contender("default", "committee: default preset",
-                              ModelSettings::from_preset("default", axes));
+// The rules of the paper with the values found, over the values of Table I.
+ModelSettings paper_settings(const AxisValues& found, std::size_t axes) {
+  ModelSettings settings = ModelSettings::from_preset("paper", axes);
+  for (std::size_t i = 0; !found.empty() && i < found.front().size(); ++i) {
+    std::vector<std::string> values;
+    for (const NamedValues& axis : found) {
+      values.push_back(axis[i].second);
+    }
+    settings.assign(found.front()[i].first, join_text(values, ","));
+  }
+  return settings;
 }
 
-// The same learner but for who is forgotten.
-Contender fifo_twin(std::string key, std::string name, const Contender& twin,
-                    ModelSettings settings) {
-  settings.assign("forget", "fifo");
-  settings.assign("adapt", "none");
-  Contender fifo = online_svr_contender(std::move(key), std::move(name), settings);
-  fifo.twin = twin.key;
-  return fifo;
+// The learner of one axis with kelpie's own values.
+ModelSettings one_axis_learner(std::size_t axes) {
+  return with(ModelSettings::from_preset("default", axes),
+              {{"learner", "svr"}, {"terms", "fossen"}, {"warmup", "200"}});
+}
+
+const NamedValues kTerms{{"terms", "fossen"}, {"lambda", "0.5"}};
+const NamedValues kFine{{"fine", "0.7"}};
+const NamedValues kOutlier{{"outlier", "robust"}};
+const NamedValues kAge{{"forget", "age"}};
+const NamedValues kChallenger{{"adapt", "challenger"}, {"memory", "4"}};
+
+// A row of the paper's learner with these settings over the values found.
+Row paper_row(const char* key, RowKind kind, const char* name,
+              std::vector<NamedValues> changes = {}, bool searched = true, bool slow = false) {
+  return {
+      key,
+      kind,
+      name,
+      searched ? "paper" : "",
+      [changes = std::move(changes)](const Row& row, const AxisValues& found, std::size_t axes) {
+        ModelSettings settings = paper_settings(found, axes);
+        for (const NamedValues& values : changes) {
+          settings = with(std::move(settings), values);
+        }
+        return online_svr_contender(row.key, row.name, settings);
+      },
+      slow};
+}
+
+Row rls_row(const char* key, const char* name, double lambda) {
+  return {
+      key, RowKind::baseline, name, {}, [lambda](const Row& row, const AxisValues&, std::size_t) {
+        return rls_contender(row.key, lambda);
+      }};
 }
 
 }  // namespace
 
 Contender online_svr_contender(std::string key, std::string name, const ModelSettings& settings) {
-  settings.validate();
-  std::string text;
-  for (const auto& [field, value] : settings.values()) {
-    text += fmt::format("{}{}={}", text.empty() ? "" : " ", field, value);
-  }
-  return {std::move(key), std::move(name), std::move(text),
-          [settings](std::span<const std::string> inputs, std::size_t axis,
-                     std::optional<AxisScaling> scaling) {
-            const TermSet terms =
-                TermSet::from(settings.shared.terms, inputs, settings.axes.size());
-            return std::make_unique<GuardedAxis>(inputs.size(), settings.shared,
-                                                 settings.axes.at(axis), terms, std::move(scaling));
+  return {std::move(key), std::move(name), text_of(settings),
+          [settings](const log::Dataset& data, std::span<const AxisScaling> scales) {
+            return axis_list(data, scales,
+                             [&](std::size_t axis, const std::optional<AxisScaling>& scaling) {
+                               return online_svr(data, axis, settings, scaling);
+                             });
           },
           settings.shared};
 }
 
-Contender sosvr_contender() {
-  const SparseOnlineSvrSettings settings;
-  return {"sosvr", "SOSVR", text_of(sparse_online_svr_fields(), settings),
-          [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
-                     std::optional<AxisScaling> scaling) {
-            return std::make_unique<ScaledSosvr>(inputs.size(), settings, std::move(scaling));
+Contender model_contender(std::string key, std::string name, const ModelSettings& settings) {
+  return {std::move(key), std::move(name), text_of(settings),
+          [settings](const log::Dataset& data, std::span<const AxisScaling> scales) {
+            return scales.empty() ? std::make_unique<DynamicsModel>(data.input_names,
+                                                                    data.target_names, settings)
+                                  : std::make_unique<DynamicsModel>(
+                                        data.input_names, data.target_names, settings, scales);
+          },
+          settings.shared};
+}
+
+Contender sosvr_contender(int dictionary, const AxisValues& values) {
+  std::string text;
+  for (const NamedValues& axis : values.empty() ? AxisValues{{}} : values) {
+    text += (text.empty() ? "" : "; ") +
+            text_of(sparse_online_svr_fields(), sosvr_settings(dictionary, axis));
+  }
+  return {"sosvr", "SOSVR", std::move(text),
+          [dictionary, values](const log::Dataset& data, std::span<const AxisScaling> scales) {
+            return axis_list(
+                data, scales, [&](std::size_t axis, const std::optional<AxisScaling>& scaling) {
+                  return std::make_unique<ScaledSosvr>(
+                      data.input_names.size(),
+                      sosvr_settings(dictionary, values.empty() ? NamedValues{} : values.at(axis)),
+                      scaling);
+                });
           }};
 }
 
@@ -99,49 +186,93 @@ Contender rls_contender(std::string key, double lambda) {
   settings.lambda = lambda;
   return {std::move(key), fmt::format("RLS, λ {}", lambda),
           text_of(recursive_least_squares_fields(), settings),
-          [settings](std::span<const std::string> inputs, std::size_t /*axis*/,
-                     const std::optional<AxisScaling>& /*scaling*/) {
-            return std::make_unique<RecursiveLeastSquares>(inputs, settings);
+          [settings](const log::Dataset& data, std::span<const AxisScaling> scales) {
+            return axis_list(data, scales, [&](std::size_t, const std::optional<AxisScaling>&) {
+              return std::make_unique<RecursiveLeastSquares>(data.input_names, settings);
+            });
           }};
 }
 
-std::vector<Contender> paper_contenders(std::size_t axes) {
-  const ModelSettings ours = paper_learner(axes);
-  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
-  return {proposed,
-          fifo_twin("fifo", "FIFO", proposed, ours),
-          committee_contender(axes),
-          sosvr_contender(),
-          rls_contender("rls", kLambda),
-          rls_contender("rls_all", 1.0),
-          rls_contender("rls_short", 0.98),
-          online_svr_contender("paper", "paper's values as written",
-                               ModelSettings::from_preset("paper", axes))};
+const std::vector<Row>& reproduction_rows() {
+  using enum RowKind;
+  static const std::vector<Row> rows{
+      paper_row("paper", paper, "the paper, settings searched"),
+      paper_row("paper_readable", paper, "the paper, Table I, γ as a reciprocal", {}, false),
+      paper_row("paper_printed", paper, "the paper, Table I as printed", {{{"gamma", "100,40,20"}}},
+                false, true),
+      paper_row("fifo", baseline, "FIFO", {{{"forget", "fifo"}}}),
+      {"sosvr", baseline, "SOSVR", "sosvr",
+       [](const Row&, const AxisValues& found, std::size_t) {
+         return sosvr_contender(kBuffer, found);
+       }},
+      rls_row("rls", "RLS, λ 0.999", 0.999),
+      rls_row("rls_all", "RLS, λ 1", 1.0),
+      rls_row("rls_short", "RLS, λ 0.98", 0.98),
+      paper_row("terms", addition, "paper + physics terms", {kTerms}),
+      paper_row("fine", addition, "paper + fine kernel", {kFine}),
+      paper_row("outlier", addition, "paper + robust outlier rule", {kOutlier}),
+      paper_row("age", addition, "paper + true age", {kAge}),
+      paper_row("challenger", addition, "paper + challenger", {kChallenger}),
+      paper_row("five", addition, "paper + all five", {kTerms, kFine, kOutlier, kAge, kChallenger}),
+      {"svr",
+       addition,
+       "kelpie's learner of one axis",
+       {},
+       [](const Row& row, const AxisValues&, std::size_t axes) {
+         return online_svr_contender(row.key, row.name, one_axis_learner(axes));
+       }},
+      {"default",
+       kelpie,
+       "kelpie's default",
+       {},
+       [](const Row& row, const AxisValues&, std::size_t axes) {
+         return model_contender(row.key, row.name, ModelSettings::from_preset("default", axes));
+       }},
+      paper_row("paper_small", paper, "the paper, buffer 300", {{{"buffer", "300"}}}),
+      paper_row("fifo_small", baseline, "FIFO, buffer 300",
+                {{{"buffer", "300"}, {"forget", "fifo"}}}),
+  };
+  return rows;
+}
+
+const std::vector<Family>& searched_families() {
+  static const std::vector<Family> families{
+      {"paper",
+       {{"gamma", {"0.03", "0.01", "0.1", "0.3"}},
+        {"epsilon", {"0.1", "0.05", "0.2"}},
+        {"c", {"10", "3", "30"}},
+        {"xi", {"0.99", "0.97", "0.9"}},
+        {"k", {"10", "1", "100"}}},
+       {{"gamma", {"0.03", "0.1"}}, {"epsilon", {"0.1", "0.05"}}},
+       [](const log::Dataset& data, std::size_t axis, const NamedValues& values) {
+         return online_svr(data, axis, with(ModelSettings::from_preset("paper", 3), values), {});
+       }},
+      {"sosvr",
+       {{"gamma", {"0.1", "0.03", "0.3"}},
+        {"threshold", {"0.01", "0.03"}},
+        {"fade_s", {"600", "100000"}},
+        {"c", {"10", "100"}}},
+       {{"gamma", {"0.1", "0.3"}}, {"threshold", {"0.01"}}},
+       [](const log::Dataset& data, std::size_t, const NamedValues& values) {
+         return std::make_unique<ScaledSosvr>(data.input_names.size(),
+                                              sosvr_settings(kBuffer, values), std::nullopt);
+       }}};
+  return families;
 }
 
 std::vector<Contender> peer_contenders() {
-  ModelSettings ours = paper_learner(1);
-  for (const auto& [name, value] : {std::pair{"gamma", "0.25"},
-                                    {"fine", "0"},
-                                    {"lambda", "1.5"},
-                                    {"c", "20"},
-                                    {"epsilon", "0.055"},
-                                    {"k", "3"},
-                                    {"anchors", "50"}}) {
-    ours.assign(name, value);
-  }
-  const Contender proposed = online_svr_contender("proposed", "proposed", ours);
-  return {proposed, fifo_twin("fifo", "FIFO, same settings", proposed, ours),
-          committee_contender(1), sosvr_contender(), rls_contender("rls", kLambda)};
-}
-
-std::vector<Contender> small_buffer_contenders(std::size_t axes, int buffer) {
-  ModelSettings ours = paper_learner(axes);
-  ours.assign("buffer", std::to_string(buffer));
-  const Contender proposed =
-      online_svr_contender("proposed_small", fmt::format("proposed, buffer {}", buffer), ours);
-  return {proposed,
-          fifo_twin("fifo_small", fmt::format("FIFO, buffer {}", buffer), proposed, ours)};
+  const ModelSettings ours = with(one_axis_learner(1), {{"gamma", "0.25"},
+                                                        {"fine", "0"},
+                                                        {"lambda", "1.5"},
+                                                        {"c", "20"},
+                                                        {"epsilon", "0.055"},
+                                                        {"k", "3"},
+                                                        {"anchors", "50"}});
+  return {online_svr_contender("svr", "learner of one axis", ours),
+          online_svr_contender("fifo", "FIFO, same settings",
+                               with(ours, {{"forget", "fifo"}, {"adapt", "none"}})),
+          model_contender("default", "kelpie's default", ModelSettings::from_preset("default", 1)),
+          sosvr_contender(SparseOnlineSvrSettings{}.dictionary), rls_contender("rls", 0.999)};
 }
 
 }  // namespace kelpie::lab

@@ -2,11 +2,13 @@
 #include "lab/cross_validation.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 
 #include "jobs/run_all.hpp"
+#include "kelpie/learner/recursive_least_squares.hpp"
 #include "study/metrics.hpp"
 
 namespace kelpie::lab {
@@ -49,19 +51,14 @@ OfflineSvrSettings settings_of(const OfflineSvrSettings& base, const CrossValida
   return settings;
 }
 
-// The squared error on stretch `fold` of the rows, of a model of all other stretches.
-double squared_error(const TrainingRows& data, const OfflineSvrSettings& settings, std::size_t fold,
-                     std::size_t folds) {
-  const std::size_t first = data.rows.size() * fold / folds;
-  const std::size_t last = data.rows.size() * (fold + 1) / folds;
-  std::vector<std::size_t> others(data.rows.begin(), data.rows.end());
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(first),
-               others.begin() + static_cast<std::ptrdiff_t>(last));
+// The squared error on the rows of a fold, of a model of all other folds.
+double squared_error(const TrainingRows& data, const OfflineSvrSettings& settings,
+                     const FoldRows& fold) {
   TrainingRows training = data;
-  training.rows = others;
+  training.rows = fold.others;
   const OfflineSvr svr(training, settings);
   double sum = 0.0;
-  for (const std::size_t row : data.rows.subspan(first, last - first)) {
+  for (const std::size_t row : fold.held_out) {
     const double error = svr.predict(data.input(row)) - data.target_of(row);
     sum += error * error;
   }
@@ -77,18 +74,18 @@ double squared_deviation(const TrainingRows& data) {
   return moments.covariance()(0, 0) * static_cast<double>(data.rows.size() - 1);
 }
 
-std::vector<std::size_t> rows_of(const log::Dataset& data, const std::vector<std::size_t>& rows,
-                                 int configuration) {
-  std::vector<std::size_t> found;
-  for (const std::size_t row : rows) {
-    if (data.configurations[row] == configuration) {
-      found.push_back(row);
-    }
-  }
-  return found;
-}
-
 }  // namespace
+
+FoldRows Folds::rows(std::span<const std::size_t> rows, std::size_t fold) const {
+  const std::size_t first = rows.size() * fold / count;
+  const std::size_t last = rows.size() * (fold + 1) / count;
+  FoldRows dealt;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool held_out = interleaved ? i % count == fold : first <= i && i < last;
+    (held_out ? dealt.held_out : dealt.others).push_back(rows[i]);
+  }
+  return dealt;
+}
 
 void CrossValidationOptions::validate() const {
   check_list(gamma, "gamma", {.low = 0.0, .open = true});
@@ -116,7 +113,8 @@ CrossValidation cross_validate(const TrainingRows& data, const OfflineSvrSetting
   // One place per model trained, summed up in a fixed order: threads can't change the result.
   std::vector<double> errors(result.cells.size() * folds);
   jobs::run_all(errors.size(), static_cast<std::size_t>(options.threads), [&](std::size_t i) {
-    errors[i] = squared_error(used, settings_of(base, result.cells[i / folds]), i % folds, folds);
+    errors[i] = squared_error(used, settings_of(base, result.cells[i / folds]),
+                              Folds{folds, options.interleaved}.rows(rows, i % folds));
   });
   const double total = squared_deviation(used);
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -137,23 +135,34 @@ std::vector<int> configurations_of(const log::Dataset& data) {
 }
 
 OfflineModel train_offline(const log::Dataset& data, const study::Split& split, std::size_t axis,
-                           int configuration, const CrossValidationOptions& options) {
-  const std::vector<std::size_t> training = rows_of(data, split.training, configuration);
-  const TrainingRows rows{.x = data.inputs,
-                          .inputs = data.input_names.size(),
-                          .y = data.targets,
-                          .targets = data.target_names.size(),
-                          .target = axis,
-                          .rows = training};
+                           int configuration, const CrossValidationOptions& options, bool terms) {
+  const std::vector<std::size_t> training =
+      study::of_configuration(data, split.training, configuration);
+  std::optional<RecursiveLeastSquares> physics;
+  if (terms) {
+    physics.emplace(data.input_names, RecursiveLeastSquaresSettings{});
+    for (const std::size_t row : training) {
+      physics->update(data.input(row), data.target(row)[axis], data.times_s[row]);
+    }
+  }
+  const auto known = [&](std::size_t row) {
+    return physics ? physics->predict(data.input(row)) : 0.0;
+  };
+  std::vector<double> remainders(data.rows(), 0.0);
+  for (const std::size_t row : training) {
+    remainders[row] = data.target(row)[axis] - known(row);
+  }
+  const TrainingRows rows{
+      .x = data.inputs, .inputs = data.input_names.size(), .y = remainders, .rows = training};
   const CrossValidation chosen = cross_validate(rows, OfflineSvrSettings{}, options);
   const OfflineSvr svr(rows, chosen.best);
   OfflineModel model{configuration, chosen.best, chosen.r2, training.size(), {}};
   for (const int other : configurations_of(data)) {
     std::vector<double> truth;
     std::vector<double> predicted;
-    for (const std::size_t row : rows_of(data, split.held_out, other)) {
-      truth.push_back(rows.target_of(row));
-      predicted.push_back(svr.predict(rows.input(row)));
+    for (const std::size_t row : study::of_configuration(data, split.held_out, other)) {
+      truth.push_back(data.target(row)[axis]);
+      predicted.push_back(known(row) + svr.predict(data.input(row)));
     }
     model.r2.push_back(study::r_squared(truth, predicted));
   }

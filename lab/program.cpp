@@ -26,7 +26,7 @@ int program(const std::vector<std::string>& words, const Streams& streams) {
       {lab::add_reproduce,
 #ifdef KELPIE_WITH_STUDIES
        lab::add_bench, lab::add_benchmark, lab::add_control, lab::add_reckoning, lab::add_diagnose,
-       lab::add_health, lab::add_hostile, lab::add_identify, lab::add_plan
+       lab::add_health, lab::add_hostile, lab::add_identify, lab::add_opponents, lab::add_plan
 #else
        add_studies_elsewhere
 #endif

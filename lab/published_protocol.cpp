@@ -13,7 +13,6 @@
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "log/read_log.hpp"
-#include "model/axis_list.hpp"
 #include "study/result.hpp"
 #include "study/split.hpp"
 #include "study/stream.hpp"
@@ -145,20 +144,16 @@ std::vector<Contender> published_contenders(std::size_t axes) {
                                with_fifo(physics, "robust")),
           online_svr_contender("fifo", "FIFO, physics terms, its own best settings",
                                with_fifo(physics, "none")),
-          online_svr_contender("default", "kelpie, default preset", base)};
+          model_contender("default", "kelpie, default preset", base)};
 }
 
 PublishedRun run_published(const log::Dataset& data, const std::vector<std::size_t>& stream,
                            const std::vector<std::size_t>& judged, const Contender& contender,
                            std::size_t every, const std::function<bool(std::size_t)>& keep_going) {
-  std::vector<std::unique_ptr<OnlineRegressor>> learners;
-  for (std::size_t axis = 0; axis < data.target_names.size(); ++axis) {
-    learners.push_back(contender.make(data.input_names, axis, std::nullopt));
-  }
-  AxisList model(std::move(learners));
+  const std::unique_ptr<OnlineModel> model = contender.make(data, {});
   const study::Split split{"as published", stream, judged};
   const study::StreamResult result =
-      study::run_stream(data, split, model, {.validate_every = every, .keep_going = keep_going});
+      study::run_stream(data, split, *model, {.validate_every = every, .keep_going = keep_going});
 
   PublishedRun run{.name = contender.name, .settings = contender.settings};
   const auto axes = static_cast<double>(result.axes.size());
@@ -187,13 +182,11 @@ PeerRun run_peer(const std::filesystem::path& file, const Contender& contender,
   const log::Dataset data = log.dataset();
   const study::Split split = split_of(log.table, data);
   const std::size_t first = first_part(log.table, data, split);
-  const AxisScaling scaling =
-      study::training_scales(data, std::span(split.training).first(first), contender.shared)
-          .front();
-  AxisList model(contender.make(data.input_names, 0, scaling));
+  const std::unique_ptr<OnlineModel> model = contender.make(
+      data, study::training_scales(data, std::span(split.training).first(first), contender.shared));
   const std::array marks{std::size_t{1000}, first,        first + 500,
                          first + 1000,      first + 2000, split.training.size()};
-  const study::StreamResult result = study::run_stream(data, split, model,
+  const study::StreamResult result = study::run_stream(data, split, *model,
                                                        {.validate_every = split.training.size(),
                                                         .also_at = {marks.begin(), marks.end()},
                                                         .keep_going = keep_going});

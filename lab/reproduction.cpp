@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,10 +15,9 @@
 #include "jobs/executor.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
-#include "lab/contenders.hpp"
+#include "lab/entries.hpp"
 #include "log/dataset.hpp"
 #include "log/read_log.hpp"
-#include "model/axis_list.hpp"
 #include "simulator/scenario.hpp"
 #include "simulator/scenario_file.hpp"
 #include "simulator/simulation.hpp"
@@ -30,10 +30,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSimulationCost = 4'000.0;  // of a log, in updates of a learner
-constexpr double kOfflineCost = 8'000.0;     // of a baseline with its cross-validation
-constexpr double kPeerCost = 16'000.0;
 constexpr double kDataShare = 0.03;  // of the time, for simulating
+constexpr double kSearchShare = 0.3;
+constexpr double kSearchCost = 1.0;
+constexpr double kOfflineCost = 8'000.0;  // of a baseline with its cross-validation
 
 // The log of one seed, and its split by each kind in kSplitKinds.
 struct SeedData {
@@ -132,82 +132,62 @@ log::Dataset first_rows(log::Dataset data, std::size_t rows) {
   return data;
 }
 
-// The rows with a single target.
-log::Dataset one_target(const log::Dataset& data, std::size_t axis) {
-  log::Dataset one = data;
-  one.target_names = {data.target_names[axis]};
-  one.targets.clear();
-  for (std::size_t row = 0; row < data.rows(); ++row) {
-    one.targets.push_back(data.target(row)[axis]);
-  }
-  return one;
-}
-
-// Progress of a job, counted in cost.
-class JobProgress {
- public:
-  JobProgress(const jobs::Advance& advance, double planned)
-      : advance_(advance), planned_(planned) {}
-
-  // Adds finished cost. False if the work has to stop.
-  bool advance(double cost) {
-    done_ += cost;
-    stopped_ = stopped_ || !advance_(done_ / planned_);
-    return !stopped_;
-  }
-  bool stopped() const { return stopped_; }
-
- private:
-  const jobs::Advance& advance_;
-  double planned_;
-  double done_ = 0.0;
-  bool stopped_ = false;
-};
-
-// A piece of work that reports finished cost to the progress.
-struct ReproductionJob {
+// A piece of work of a rough cost, in updates of a learner.
+struct Work {
   double cost = 0.0;
-  std::function<void(JobProgress&)> work;
+  std::function<void(const jobs::Advance&)> run;
 };
 
-// Runs the jobs on the plan's threads; `from` and `to` are the shares of all work done before and
-// after. False if the work was stopped. Rethrows exceptions of jobs.
-bool run_jobs(const std::vector<ReproductionJob>& list, const ReproductionPlan& plan, double from,
-              double to) {
-  std::vector<jobs::Job> costs;
-  for (const ReproductionJob& one : list) {
-    costs.push_back({.cost = one.cost});
+// Does the work on the plan's threads; `from` and `to` are the shares of all work done before and
+// after. False if the work was stopped. Rethrows exceptions.
+bool do_all(const std::vector<Work>& list, const ReproductionPlan& plan, double from, double to) {
+  std::vector<jobs::Job> jobs;
+  for (const Work& one : list) {
+    jobs.push_back({.cost = one.cost});
   }
-  const auto work = [&](std::size_t i, const jobs::Advance& advance) {
-    JobProgress progress(advance, list[i].cost);
-    list[i].work(progress);
-    return std::string();
-  };
   return jobs::make_thread_executor(plan.threads)
-      ->run({.jobs = costs,
-             .work = work,
+      ->run({.jobs = jobs,
+             .work =
+                 [&](std::size_t i, const jobs::Advance& advance) {
+                   list[i].run(advance);
+                   return std::string();
+                 },
              .done = [](std::size_t, const std::string&) {},
              .keep_going =
                  [&](double share) { return plan.keep_going(from + (to - from) * share); }});
 }
 
 // Tells the progress of every hundredth sample.
-std::function<bool(std::size_t)> steps(JobProgress& progress) {
-  constexpr std::size_t kStride = 100;
-  return [&progress](std::size_t shown) {
-    return shown % kStride != 0 || progress.advance(static_cast<double>(kStride));
+std::function<bool(std::size_t)> steps(const jobs::Advance& advance, std::size_t samples) {
+  return [&advance, samples](std::size_t shown) {
+    return shown % 100 != 0 || advance(static_cast<double>(shown) / static_cast<double>(samples));
   };
 }
 
-// A stream while it is being measured: a study for each split, and the seeds' data.
+// What pages and numbers need of a stream.
+SeedRun kept_of(study::StreamResult stream) {
+  SeedRun run;
+  std::vector<double> times;
+  for (study::AxisResult& axis : stream.axes) {
+    std::ranges::move(axis.update_us, std::back_inserter(times));
+    study::AxisResult& kept = run.axes.emplace_back();
+    kept.name = std::move(axis.name);
+    kept.validation = std::move(axis.validation);
+    kept.stages = std::move(axis.stages);
+    kept.status = axis.status;
+  }
+  run.update_us = study::quantiles_of(times);
+  return run;
+}
+
+// A stream while it is being measured, and the seeds' data.
 struct Course {
   std::string key;
   bool simulated = true;
   std::string source;
   bool full_range_only = false;
   std::size_t seeds = 0;
-  bool offline = false;
-  std::vector<Contender> contenders;
+  bool main = false;           // with off-line baselines and a search for settings
   std::vector<SeedData> data;  // by seed
 };
 
@@ -218,16 +198,25 @@ class Runner {
   Reproduction run() {
     result_.plan = plan_;
     plan_courses();
-    result_.interrupted = !run_jobs(data_jobs(), plan_, 0.0, kDataShare);
-    if (!result_.interrupted) {
+    const auto done = [&](const std::vector<Work>& work, double from, double to) {
+      result_.interrupted = result_.interrupted || !do_all(work, plan_, from, to);
+      return !result_.interrupted;
+    };
+    if (done(data_work(), 0.0, kDataShare)) {
+      run_entries();
       begin_studies();
-      result_.interrupted = !run_jobs(measuring_jobs(), plan_, kDataShare, 1.0);
+    }
+    if (!result_.interrupted && done(search_work(), kDataShare, kSearchShare)) {
+      begin_rows();
+      done(measuring_work(), kSearchShare, 1.0);
+      add_entry_rows();
     }
     return std::move(result_);
   }
 
  private:
   static constexpr std::size_t kAxes = 3;
+  static constexpr std::size_t kKinds = std::size(kSplitKinds);
 
   void plan_courses() {
     add_simulated("simulation", plan_.scenario, plan_.seeds, true);
@@ -239,10 +228,9 @@ class Runner {
       result_.real_log = true;
       courses_.push_back({.key = "real",
                           .simulated = false,
-                          .source = (plan_.data / kRealLogName).string(),
+                          .source = kRealLogName,
                           .seeds = plan_.seeds,
-                          .offline = true,
-                          .contenders = contenders(true),
+                          .main = true,
                           .data = {}});
     }
   }
@@ -252,187 +240,204 @@ class Runner {
     scenarios_.push_back(
         planned_scenario(plan_.scenarios, name, main ? plan_.scenario_share : plan_.further_share));
     courses_.push_back({.key = key,
-                        .source = (plan_.scenarios / (name + ".toml")).string(),
+                        .source = "scenarios/" + name + kExtension,
                         .full_range_only = name == "concentrated",
                         .seeds = seeds,
-                        .offline = main,
-                        .contenders = contenders(main),
+                        .main = main,
                         .data = {}});
   }
 
-  // The paper's values as written run on the paper's streams only.
-  std::vector<Contender> contenders(bool main) const {
-    std::vector<Contender> list = paper_contenders(kAxes);
-    if (!main) {
-      list.pop_back();
-    }
-    std::ranges::move(small_buffer_contenders(kAxes, plan_.small_buffer), std::back_inserter(list));
-    return list;
-  }
-
-  std::vector<ReproductionJob> data_jobs() {
-    std::vector<ReproductionJob> jobs;
+  std::vector<Work> data_work() {
+    std::vector<Work> work;
     for (std::size_t i = 0; i < courses_.size(); ++i) {
       Course& course = courses_[i];
       course.data.resize(course.seeds);
       for (std::size_t seed = 0; seed < course.seeds; ++seed) {
-        jobs.push_back({kSimulationCost, [this, &course, i, seed](JobProgress& progress) {
+        work.push_back({1.0, [this, &course, i, seed](const jobs::Advance&) {
                           const std::uint64_t number = plan_.first_seed + seed;
                           course.data[seed] =
                               course.simulated
                                   ? simulated_data(scenarios_[i], course.source, number,
                                                    course.full_range_only)
                                   : split_data(first_rows(real_, plan_.real_rows), number);
-                          progress.advance(kSimulationCost);
                         }});
       }
     }
-    return jobs;
+    return work;
   }
 
-  // Makes room for every result, so that jobs in any order fill the same places.
+  // Makes room for every result, so that work in any order fills the same places.
   void begin_studies() {
     for (const Course& course : courses_) {
-      for (std::size_t kind = 0; kind < std::size(kSplitKinds); ++kind) {
-        const SeedData& first = course.data.front();
+      const SeedData& first = course.data.front();
+      for (std::size_t kind = 0; kind < kKinds; ++kind) {
         StreamStudy study{
             .key = course.key,
             .simulated = course.simulated,
             .source = course.source,
+            .split_kind = kSplitKinds[kind],
             .split = first.splits[kind].label,
-            .split_kind = study::to_string(kSplitKinds[kind]),
             .rate_hz = first.data.rate_hz,
             .training_rows = first.splits[kind].training.size(),
             .held_out_rows = first.splits[kind].held_out.size(),
             .note = course.full_range_only ? "judged on held-out rows of the full range alone" : "",
             .configurations = configurations_of(first.data),
-            .axes = first.data.target_names,
-            .contenders = {},
-            .offline = {}};
-        for (const Contender& contender : course.contenders) {
-          study.contenders.push_back({contender.key, contender.name, contender.settings});
-          study.contenders.back().seeds.assign(seeds_of(course, kind, contender),
-                                               std::vector<study::AxisResult>(study.axes.size()));
-        }
-        for (const std::string& axis : study.axes) {
-          if (course.offline) {
+            .axes = first.data.target_names};
+        if (course.main) {
+          study.found.assign(searched_families().size(),
+                             std::vector<FoundSettings>(study.axes.size()));
+          for (const std::string& axis : study.axes) {
             study.offline.push_back({axis, {study.configurations.size(), OfflineModel{}}});
           }
+          study.offline_terms = study.offline;
         }
         result_.studies.push_back(std::move(study));
       }
     }
   }
 
-  // The same log cut into the same blocks gives the same run again.
-  std::size_t seeds_of(const Course& course, std::size_t kind, const Contender& contender) const {
-    if (!course.simulated && kSplitKinds[kind] == study::SplitKind::blocks) {
-      return 1;
-    }
-    return contender.key == "paper" ? std::min(course.seeds, plan_.paper_seeds) : course.seeds;
+  const Course& course_of(std::size_t study) const { return courses_[study / kKinds]; }
+  const study::Split& split_of(std::size_t study, std::size_t seed) const {
+    return course_of(study).data[seed].splits[study % kKinds];
   }
 
-  std::vector<ReproductionJob> measuring_jobs() {
-    std::vector<ReproductionJob> jobs;
+  // Folds as the split that the settings are for: interleaved rows leak as a random split does.
+  Folds folds_of(std::size_t study) const {
+    return {plan_.folds, result_.studies[study].split_kind == study::SplitKind::random};
+  }
+
+  // The search sees the first configuration's training rows of the first seed, as the paper's.
+  std::vector<Work> search_work() {
+    std::vector<Work> work;
     for (std::size_t i = 0; i < result_.studies.size(); ++i) {
-      const std::size_t kinds = std::size(kSplitKinds);
-      add_stream_jobs(jobs, courses_[i / kinds], i % kinds, result_.studies[i]);
-      add_offline_jobs(jobs, courses_[i / kinds], i % kinds, result_.studies[i]);
+      for (std::size_t family = 0; family < result_.studies[i].found.size(); ++family) {
+        for (std::size_t axis = 0; axis < result_.studies[i].axes.size(); ++axis) {
+          work.push_back({kSearchCost, [this, i, family, axis](const jobs::Advance& advance) {
+                            search(i, family, axis, advance);
+                          }});
+        }
+      }
     }
-    add_published_jobs(jobs);
-    add_peer_jobs(jobs);
-    return jobs;
+    return work;
   }
 
-  void add_stream_jobs(std::vector<ReproductionJob>& jobs, const Course& course, std::size_t kind,
-                       StreamStudy& study) {
-    for (std::size_t who = 0; who < study.contenders.size(); ++who) {
-      const std::string& twin = course.contenders[who].twin;
-      for (std::size_t seed = 0; twin.empty() && seed < study.contenders[who].seeds.size();
-           ++seed) {
-        for (std::size_t axis = 0; axis < study.axes.size(); ++axis) {
-          jobs.push_back({static_cast<double>(study.training_rows),
-                          [this, &course, kind, who, seed, axis, &study](JobProgress& progress) {
-                            run_with_twins(course, kind, who, seed, axis, study, progress);
+  void search(std::size_t i, std::size_t family, std::size_t axis, const jobs::Advance& advance) {
+    StreamStudy& study = result_.studies[i];
+    const Family& searched = searched_families()[family];
+    const SettingsGrid& grid = plan_.quick ? searched.quick : searched.grid;
+    const log::Dataset& data = course_of(i).data.front().data;
+    std::size_t planned = plan_.folds;
+    for (const auto& [name, values] : grid) {
+      planned += plan_.folds * (values.size() - 1);
+    }
+    std::size_t done = 0;
+    study.found[family][axis] = search_settings(
+        data, study::of_configuration(data, split_of(i, 0).training, study.configurations.front()),
+        axis, folds_of(i), grid, searched.make,
+        [&] { return advance(static_cast<double>(done++) / static_cast<double>(planned)); });
+  }
+
+  void begin_rows() {
+    for (std::size_t i = 0; i < result_.studies.size(); ++i) {
+      StreamStudy& study = result_.studies[i];
+      // Further streams are of the main stream's vehicle.
+      const auto& found = result_.studies[study.found.empty() ? i % kKinds : i].found;
+      for (const Row& row : reproduction_rows()) {
+        if (row.slow && (plan_.quick || !course_of(i).main)) {
+          continue;
+        }
+        AxisValues values;
+        for (std::size_t family = 0; family < searched_families().size(); ++family) {
+          if (row.family == searched_families()[family].key) {
+            std::ranges::transform(found[family], std::back_inserter(values),
+                                   &FoundSettings::values);
+          }
+        }
+        const Contender& made = contenders_.emplace_back(row.make(row, values, study.axes.size()));
+        study.rows.push_back({row.key, row.kind, row.name, made.settings});
+        study.rows.back().seeds.resize(row.slow ? 1 : seeds_of(i));
+      }
+    }
+  }
+
+  // The same log cut into the same blocks gives the same run again.
+  std::size_t seeds_of(std::size_t i) const {
+    const StreamStudy& study = result_.studies[i];
+    return !study.simulated && study.split_kind == study::SplitKind::blocks ? 1
+                                                                            : course_of(i).seeds;
+  }
+
+  std::vector<Work> measuring_work() {
+    std::vector<Work> work;
+    auto contender = contenders_.begin();
+    for (std::size_t i = 0; i < result_.studies.size(); ++i) {
+      for (RowRuns& row : result_.studies[i].rows) {
+        add_row_work(work, i, row, *contender++);
+      }
+      add_offline_work(work, i);
+    }
+    return work;
+  }
+
+  void add_row_work(std::vector<Work>& work, std::size_t i, RowRuns& row,
+                    const Contender& contender) const {
+    for (std::size_t seed = 0; seed < row.seeds.size(); ++seed) {
+      SeedRun& place = row.seeds[seed];
+      work.push_back({static_cast<double>(result_.studies[i].training_rows),
+                      [this, i, seed, &contender, &place](const jobs::Advance& advance) {
+                        const log::Dataset& data = course_of(i).data[seed].data;
+                        const study::Split& split = split_of(i, seed);
+                        const std::unique_ptr<OnlineModel> model = contender.make(data, {});
+                        place = kept_of(study::run_stream(
+                            data, split, *model,
+                            {.validate_every = plan_.validate_every,
+                             .keep_going = steps(advance, split.training.size())}));
+                      }});
+    }
+  }
+
+  void add_offline_work(std::vector<Work>& work, std::size_t i) {
+    StreamStudy& study = result_.studies[i];
+    CrossValidationOptions grid = plan_.grid;
+    grid.interleaved = folds_of(i).interleaved;
+    for (std::size_t axis = 0; axis < study.offline.size(); ++axis) {
+      for (std::size_t k = 0; k < study.configurations.size(); ++k) {
+        for (const bool terms : {false, true}) {
+          OfflineModel& place = (terms ? study.offline_terms : study.offline)[axis].models[k];
+          work.push_back({kOfflineCost, [this, i, axis, grid, terms, &place,
+                                         only = study.configurations[k]](const jobs::Advance&) {
+                            place = train_offline(course_of(i).data.front().data, split_of(i, 0),
+                                                  axis, only, grid, terms);
                           }});
         }
       }
     }
   }
 
-  // One learner, and those that can't differ from it where nothing was forgotten: there, its run is
-  // theirs.
-  void run_with_twins(const Course& course, std::size_t kind, std::size_t who, std::size_t seed,
-                      std::size_t axis, StreamStudy& study, JobProgress& progress) const {
-    study::AxisResult& place = study.contenders[who].seeds[seed][axis];
-    place = run_axis(course.data[seed], kind, course.contenders[who], axis, progress);
-    for (std::size_t other = 0; other < course.contenders.size(); ++other) {
-      if (course.contenders[other].twin == course.contenders[who].key && !progress.stopped()) {
-        study.contenders[other].seeds[seed][axis] =
-            place.status.tally.forgotten == 0 && place.status.tally.changes == 0
-                ? place
-                : run_axis(course.data[seed], kind, course.contenders[other], axis, progress);
+  // Entries come before the long work, since an entry may be refused.
+  void run_entries() {
+    std::vector<EntryStream> streams;
+    for (const Course& course : courses_) {
+      for (const SeedData& seed : course.data) {
+        streams.push_back({seed.data, seed.splits});
       }
     }
+    if (!plan_.entries.empty()) {
+      entries_ = lab::run_entries(plan_.entries, streams, plan_.first_seed, plan_.threads);
+    }
   }
 
-  study::AxisResult run_axis(const SeedData& seed, std::size_t kind, const Contender& contender,
-                             std::size_t axis, JobProgress& progress) const {
-    const log::Dataset data = one_target(seed.data, axis);
-    AxisList model(contender.make(data.input_names, axis, std::nullopt));
-    study::StreamResult stream =
-        study::run_stream(data, seed.splits[kind], model,
-                          {.validate_every = plan_.validate_every, .keep_going = steps(progress)});
-    return std::move(stream.axes.front());
-  }
-
-  void add_offline_jobs(std::vector<ReproductionJob>& jobs, const Course& course, std::size_t kind,
-                        StreamStudy& study) {
-    for (std::size_t axis = 0; axis < study.offline.size(); ++axis) {
-      for (std::size_t i = 0; i < study.configurations.size(); ++i) {
-        jobs.push_back(
-            {kOfflineCost, [this, &course, kind, axis, i, &study](JobProgress& progress) {
-               const SeedData& seed = course.data.front();
-               study.offline[axis].models[i] = train_offline(seed.data, seed.splits[kind], axis,
-                                                             study.configurations[i], plan_.grid);
-               progress.advance(kOfflineCost);
-             }});
+  void add_entry_rows() {
+    for (const EntryRuns& entry : entries_) {
+      std::size_t stream = 0;
+      for (std::size_t i = 0; i < result_.studies.size(); ++i) {
+        RowRuns row{entry.key, RowKind::entry, entry.name, entry.place};
+        for (std::size_t seed = 0; seed < seeds_of(i); ++seed) {
+          row.seeds.push_back(entry.runs[stream + seed][i % kKinds]);
+        }
+        stream += i % kKinds + 1 == kKinds ? course_of(i).seeds : 0;
+        result_.studies[i].rows.push_back(std::move(row));
       }
-    }
-  }
-
-  void add_published_jobs(std::vector<ReproductionJob>& jobs) {
-    if (!result_.real_log || real_.rows() != kPublishedLogRows) {
-      return;
-    }
-    published_ = published_contenders(kAxes);
-    published_rows_ = published_rows(real_.rows());
-    result_.published.resize(published_.size());
-    for (std::size_t i = 0; i < published_.size(); ++i) {
-      jobs.push_back(
-          {static_cast<double>(published_rows_.stream.size()), [this, i](JobProgress& progress) {
-             result_.published[i] =
-                 run_published(real_, published_rows_.stream, published_rows_.test, published_[i],
-                               plan_.published_every, steps(progress));
-           }});
-    }
-  }
-
-  void add_peer_jobs(std::vector<ReproductionJob>& jobs) {
-    std::vector<fs::path> files;
-    for (const std::string_view name : kPeerStreams) {
-      const fs::path file = plan_.data / "peer_streams" / (std::string(name) + ".csv");
-      if (plan_.peers && !plan_.data.empty() && fs::exists(file)) {
-        files.push_back(file);
-      }
-    }
-    peers_ = peer_contenders();
-    result_.peers.resize(files.size() * peers_.size());
-    for (std::size_t i = 0; i < result_.peers.size(); ++i) {
-      jobs.push_back({kPeerCost, [this, i, file = files[i / peers_.size()]](JobProgress& progress) {
-                        result_.peers[i] =
-                            run_peer(file, peers_[i % peers_.size()], steps(progress));
-                      }});
     }
   }
 
@@ -441,9 +446,8 @@ class Runner {
   log::Dataset real_;
   std::vector<simulator::Scenario> scenarios_;  // of the first courses, which are simulated
   std::vector<Course> courses_;
-  std::vector<Contender> published_;
-  PublishedRows published_rows_;
-  std::vector<Contender> peers_;
+  std::vector<Contender> contenders_;  // by study and row
+  std::vector<EntryRuns> entries_;
 };
 
 }  // namespace
@@ -454,7 +458,6 @@ void ReproductionPlan::validate() const {
     require_range("scenario_share", share, {.low = 0.0, .high = 1.0, .open = true});
   }
   require_range("validate_every", static_cast<double>(validate_every), {.low = 1.0});
-  require_range("published_every", static_cast<double>(published_every), {.low = 1.0});
   grid.validate();
 }
 
@@ -469,14 +472,11 @@ ReproductionPlan quick_plan() {
   plan.quick = true;
   plan.seeds = 1;
   plan.further.clear();
-  plan.paper_seeds = 1;
   plan.scenario_share = 0.2;
   plan.further_share = 0.4;
   plan.real_rows = 4000;
-  plan.validate_every = 100;
-  plan.published_every = 50;
+  plan.folds = 2;
   plan.grid = {.gamma = {0.1, 0.3}, .c = {10.0}, .epsilon = {0.03, 0.1}, .folds = 3, .thin = 8};
-  plan.peers = false;
   return plan;
 }
 

@@ -53,5 +53,24 @@ TEST(OfflineMatrix, HeldOutRowsHaveNoPartInTheChoice) {
   EXPECT_NE(spoilt.r2, honest.r2);
 }
 
+// Learned at half speed and asked at full speed, where the kernel knows nothing.
+TEST(OfflineMatrix, TermsReachBeyondTheRowsLearned) {
+  log::Dataset data = testing::small_log(500);
+  data.input_names = {"u", "v", "r", "n1"};
+  data.inputs.clear();
+  for (std::size_t row = 0; row < 500; ++row) {
+    const double size = row < 400 ? 1.0 : 2.0;  // the tail is held out
+    const auto i = static_cast<double>(row);
+    const double u = size * std::sin(0.37 * i);
+    const double n = 10.0 * size * std::cos(0.11 * i);
+    data.inputs.insert(data.inputs.end(), {u, std::sin(0.7 * i), std::cos(0.5 * i), n});
+    data.targets[row] = 0.01 * n * std::abs(n) - u * std::abs(u);
+  }
+  const study::Split split = study::make_split(data, {.kind = study::SplitKind::tail});
+  const double with_terms = lab::train_offline(data, split, 0, 0, grid(), true).r2.at(0);
+  EXPECT_GT(with_terms, 0.99);
+  EXPECT_LT(lab::train_offline(data, split, 0, 0, grid()).r2.at(0), with_terms - 0.2);
+}
+
 }  // namespace
 }  // namespace kelpie::offline_matrix_test

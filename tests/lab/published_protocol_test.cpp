@@ -44,14 +44,18 @@ TEST(PublishedProtocol, NoRowPlaysTwoParts) {
 TEST(PublishedProtocol, OurLearnersKeepAHundredSamples) {
   const std::vector<lab::Contender> contenders = lab::published_contenders(3);
   EXPECT_EQ(contenders.size(), 7U);
+  log::Dataset data;
+  data.input_names = {"u", "v", "r"};
+  data.target_names = {"udot", "vdot", "rdot"};
   for (const lab::Contender& contender : contenders) {
-    const auto learner = contender.make(std::vector<std::string>{"u", "v", "r"}, 0, std::nullopt);
+    const auto model = contender.make(data, {});
     for (int i = 0; i < 400; ++i) {
       const double x = 0.01 * (i * 37 % 400);
-      learner->update(std::array{x, std::sin(40.0 * x), std::cos(70.0 * x)}, x * x - x, i);
-      EXPECT_LE(learner->status().buffer, 100) << contender.name;
+      const double y = x * x - x;
+      model->update(std::array{x, std::sin(40.0 * x), std::cos(70.0 * x)}, std::array{y, y, y}, i);
+      EXPECT_LE(model->axis(0).status().buffer, 100) << contender.name;
     }
-    EXPECT_TRUE(learner->status().ready) << contender.name;
+    EXPECT_TRUE(model->axis(0).status().ready) << contender.name;
   }
 }
 

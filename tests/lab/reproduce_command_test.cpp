@@ -43,13 +43,19 @@ TEST_F(Reproduce, WritesPageAndNumbersWithoutTheRealLog) {
       testing::succeeded(run("reproduce --quick --scenario tiny --threads 1 --out out"));
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(outcome.out.find("simulation only"), std::string::npos);
-  EXPECT_NE(outcome.out.find("off-line baseline"), std::string::npos);
+  EXPECT_NE(outcome.out.find("off-line SVR"), std::string::npos);
   const auto json = parsed("out/reproduction.json");
   EXPECT_FALSE(json["real_log"].get<bool>());
   EXPECT_TRUE(json["plan"]["quick"].get<bool>());
   EXPECT_EQ(json["streams"].size(), 2U);
   const std::string page = content("out/reproduction.html");
   EXPECT_NE(page.find("everything below is simulation"), std::string::npos);
+
+  // Drawn again without a measurement, the pages are the same.
+  testing::succeeded(run("reproduce --draw out/reproduction.json --out again"));
+  for (const char* const file : {"reproduction.html", "reproduction.md", "reproduction.json"}) {
+    EXPECT_EQ(content("again/" + std::string(file)), content("out/" + std::string(file))) << file;
+  }
 }
 
 TEST_F(Reproduce, RefusesBadInput) {
@@ -63,6 +69,8 @@ TEST_F(Reproduce, RefusesBadInput) {
   expect_refused("--seeds 1001", "seeds: 1001 is out of range");
   write_text(folder_ / "scenarios" / "bad.toml", "rate_hz = 'fast'\n");
   expect_refused("--scenario bad", "bad.toml");
+  write_text(folder_ / "other.json", "{\"format\": \"other\"}\n");
+  expect_refused("--draw other.json", "other.json: format: has to be kelpie-reproduction");
 }
 
 TEST_F(Reproduce, FindsTheScenariosThatCameWithItFromAnyFolder) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <string>
 
 #include "kelpie/core/error.hpp"
@@ -35,7 +36,6 @@ class ReproductionTest : public ::testing::Test {
     plan_.scenario = "main";
     plan_.scenario_share = 1.0;
     plan_.further_share = 1.0;
-    plan_.small_buffer = 60;
     plan_.grid = {.gamma = {0.1}, .c = {10.0}, .epsilon = {0.1}, .folds = 2, .thin = 8};
   }
 
@@ -54,9 +54,9 @@ std::vector<double> numbers_of(const lab::Reproduction& result) {
     if (study.key != "simulation") {
       continue;
     }
-    for (const lab::ContenderRuns& runs : study.contenders) {
-      for (const std::vector<study::AxisResult>& seed : runs.seeds) {
-        for (const study::AxisResult& axis : seed) {
+    for (const lab::RowRuns& runs : study.rows) {
+      for (const lab::SeedRun& seed : runs.seeds) {
+        for (const study::AxisResult& axis : seed.axes) {
           for (const study::ValidationPoint& point : axis.validation) {
             numbers.push_back(point.r2);
           }
@@ -83,45 +83,56 @@ TEST_F(ReproductionTest, SameNumbersWithAnyNumberOfThreads) {
   EXPECT_EQ(numbers_of(one), numbers_of(lab::reproduce(plan_)));
   ASSERT_EQ(one.studies.size(), 4U);  // random and blocks of both; no real log was given
   EXPECT_FALSE(one.real_log);
-  EXPECT_TRUE(one.published.empty());
-  EXPECT_TRUE(one.peers.empty());
   for (const lab::StreamStudy& study : one.studies) {
     const bool main = study.key == "simulation";
     EXPECT_TRUE(study.simulated);
-    EXPECT_EQ(study.contenders.size(), main ? 10U : 9U);
+    EXPECT_EQ(study.rows.size(), static_cast<std::size_t>(std::ranges::count(
+                                     lab::reproduction_rows(), false, &lab::Row::slow)));
     EXPECT_EQ(study.offline.size(), main ? 3U : 0U);
-    for (const study::AxisResult& axis : study.contenders[0].seeds[0]) {
+    EXPECT_EQ(study.offline_terms.size(), main ? 3U : 0U);
+    EXPECT_EQ(study.found.size(), main ? lab::searched_families().size() : 0U);
+    for (const study::AxisResult& axis : study.rows.back().seeds[0].axes) {
       ASSERT_EQ(axis.stages.size(), 1U) << axis.name;
       EXPECT_GT(axis.stages[0].r2, 0.7) << axis.name;
       // The second phase of the concentrated stream is at low speed: nobody is judged on it.
       const auto in_second = [](double time_s) { return time_s > 425.5 && time_s < 1275.0; };
       EXPECT_EQ(std::ranges::none_of(axis.stages[0].time_s, in_second),
-                !main || study.split_kind == "blocks");
+                !main || study.split_kind == study::SplitKind::blocks);
     }
-    const lab::ContenderRuns& small = study.contenders[main ? 8 : 7];
-    const lab::ContenderRuns& small_fifo = study.contenders[main ? 9 : 8];
-    EXPECT_EQ(small.key, "proposed_small");
-    EXPECT_GT(small.seeds[0][0].status.tally.forgotten, 0);
-    EXPECT_NE(small.seeds[0][0].r2_final, small_fifo.seeds[0][0].r2_final);
   }
 }
 
-// FIFO takes the proposed learner's run where nothing was forgotten: it has to be what it would
-// have got on its own.
-TEST_F(ReproductionTest, FifoIsTheProposedLearnerUntilSomethingIsForgotten) {
-  const std::vector<lab::Contender> contenders = lab::paper_contenders(1);
-  ASSERT_EQ(contenders[1].twin, "proposed");
-  const auto proposed = contenders[0].make(std::vector<std::string>{"x"}, 0, std::nullopt);
-  const auto fifo = contenders[1].make(std::vector<std::string>{"x"}, 0, std::nullopt);
-  for (int i = 0; i < 1500; ++i) {
-    const double x = 0.01 * (i * 37 % 1000);
-    proposed->update({&x, 1}, x * x - x, i);
-    fifo->update({&x, 1}, x * x - x, i);
-    if (!proposed->status().early) {  // of a scale that ten samples give: errors grow
-      EXPECT_EQ(proposed->predict({&x, 1}), fifo->predict({&x, 1})) << i;
+// Rows in order of the page, and what the paper's row may not have.
+TEST_F(ReproductionTest, ThePapersRowsAreThePapersRules) {
+  std::set<std::string> keys;
+  for (const lab::Row& row : lab::reproduction_rows()) {
+    EXPECT_TRUE(keys.insert(row.key).second) << row.key;
+    const std::string settings = row.make(row, lab::AxisValues(3, {{"gamma", "0.03"}}), 3).settings;
+    const auto says = [&](const std::string& part) {
+      return (settings + " ").find(part + " ") != std::string::npos;
+    };
+    if (row.kind == lab::RowKind::paper) {
+      for (const char* const rule : {"fine=0", "lambda=0", "terms=none", "outlier=iqr",
+                                     "forget=paper", "adapt=none", "scaling=full", "memory=0"}) {
+        EXPECT_TRUE(says(rule)) << row.key << ": " << settings;
+      }
+    }
+    if (row.family == "paper" && row.key != std::string("paper_printed")) {
+      EXPECT_TRUE(says("gamma=0.03")) << row.key << ": " << settings;
+    }
+    if (row.key == std::string("fifo")) {
+      EXPECT_TRUE(says("forget=fifo") && says("buffer=900")) << settings;
+    }
+    if (row.key == std::string("sosvr")) {
+      EXPECT_TRUE(says("dictionary=900")) << settings;
+    }
+    if (row.kind == lab::RowKind::kelpie) {
+      const ModelSettings ours = ModelSettings::from_preset("default", 3);
+      for (const auto& [name, value] : ours.values()) {
+        EXPECT_TRUE(says(name + "=" + value)) << name;
+      }
     }
   }
-  EXPECT_EQ(proposed->status().tally.forgotten, 0);
 }
 
 TEST_F(ReproductionTest, StopsWhenAsked) {

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._log import read_log
+from .._splits import BlockSplit
 from ._manifest import Source
 
 Floats = NDArray[np.float64]
@@ -43,6 +44,8 @@ class Dataset:
     vehicle: Floats  # (n,) the configuration, which may return in a later stretch
     left_out: NDArray[np.bool_]  # (n,) rows of runs that no learner learns
     truth: Optional[Floats] = None  # (n, targets) without noise
+    splits: Optional[dict[str, NDArray[np.int64]]] = None  # of `whole`: 1 held out, 0 learned
+    whole: Optional["Dataset"] = None  # all rows, for the track paper
 
     def rows(self, chosen: Any) -> "Dataset":
         """The chosen rows: a mask, or numbers of rows."""
@@ -101,8 +104,29 @@ def load(source: Source, most_rows: int, seed: int) -> Dataset:
     task = Task(source.inputs, source.targets, _states(source), rate / source.thin, seed)
     whole = Dataset(source, task, X[chosen], y[chosen], t[chosen], run, stretch, conf,
                     np.zeros(len(chosen), bool), truth)
-    whole = whole.rows(_every(whole.run, source.thin))
-    return _leave_runs_out(_shortened(whole, most_rows))
+    kept = _every(whole.run, source.thin)
+    whole = whole.rows(kept)
+    short = _leave_runs_out(_shortened(whole, most_rows))
+    if "paper" not in source.tracks:
+        return short
+    splits = ({name: columns[name][chosen][kept].astype(int) for name in source.held_out}
+              or _splits(whole))
+    return replace(short, whole=replace(whole, splits=splits))
+
+
+def _splits(data: Dataset) -> dict[str, NDArray[np.int64]]:
+    """The paper's split, a fifth of the rows of each vehicle at random, and blocks of rows."""
+    random = np.random.default_rng(data.task.seed)
+    drawn, blocks = np.zeros(len(data.t), int), np.zeros(len(data.t), int)
+    for vehicle in np.unique(data.vehicle):
+        here = np.flatnonzero(data.vehicle == vehicle)
+        drawn[random.permutation(here)[:len(here) // LEFT_OUT]] = 1
+    try:
+        (_, held_out), = BlockSplit("auto").split(data.X, groups=data.vehicle.astype(int))
+    except ValueError as error:
+        raise data.source.refuse("tracks", f"paper: {error}") from None
+    blocks[held_out] = 1
+    return {"random": drawn, "blocks": blocks}
 
 
 def _read(source: Source, place: int) -> dict[str, Any]:
@@ -135,6 +159,7 @@ def _read(source: Source, place: int) -> dict[str, Any]:
     found = {"X": X, "y": y, "t": t, "run": run, "file": np.full(rows, place),
              "conf": (column("configuration", source.configuration) if source.configuration
                       else np.zeros(rows))}
+    found |= {name: column("held_out", name) for name in source.held_out}
     if source.truth:
         found["truth"] = np.column_stack([column("truth", name) for name in source.truth])
     return found

@@ -146,12 +146,13 @@ class Kelpie:
 class KelpiePaper:
     """The paper's learner with the paper's settings (the preset paper)."""
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: Task, **settings: Any) -> None:
+        settings = {"preset": "paper", **settings}
         if len(task.targets) == 3:  # the preset has values for surge, sway and yaw
-            self.models = [Kelpie(task, preset="paper")]
+            self.models = [Kelpie(task, **settings)]
             self.rollout = self.models[0].rollout
         else:  # those for surge, for every target
-            self.models = [Kelpie(replace(task, targets=[target], states=[]), preset="paper")
+            self.models = [Kelpie(replace(task, targets=[target], states=[]), **settings)
                            for target in task.targets]
 
     def partial_fit(self, X: Floats, y: Floats, t: Floats) -> None:
@@ -271,6 +272,58 @@ class LinearSgd(_Scaled):
         return np.column_stack([model.predict(X) for model in self.models])
 
 
+class Sosvr(_Scaled):
+    """SOSVR: ε-SVR on a dictionary of 300 independent rows, fitted anew when an answer is wanted.
+
+    A row enters where its independence from the dictionary, 1 - k K^-1 k, exceeds a threshold. From
+    a full dictionary the row with the least independence, faded by age, leaves, if less than the
+    newcomer's. The scale is that of the first rows.
+    """
+
+    ROWS, FIRST, THRESHOLD, FADE_S, RIDGE, GAMMA = 300, 50, 0.001, 600.0, 1e-6, 0.15
+
+    def __init__(self, task: Task) -> None:
+        super().__init__(task)
+        self.X, self.y = np.zeros((0, len(task.inputs))), np.zeros((0, len(task.targets)))
+        self.t, self.inverse = np.zeros(0), np.zeros((0, 0))
+        self.models: list[Any] = []
+        self.waiting: list[tuple[Floats, Floats, Floats]] = []  # until the scale is known
+
+    def partial_fit(self, X: Floats, y: Floats, t: Floats) -> None:
+        if self.scale is None:
+            self.waiting.append((X, y, t))
+            X, y, t = (np.concatenate(part) for part in zip(*self.waiting))
+            if len(X) < self.FIRST:
+                return
+            self.scaled(X, y)
+        mean_X, spread_X, mean_y, spread_y = self.scale or []
+        for row in zip((X - mean_X) / spread_X, (y - mean_y) / spread_y, t):
+            self._show(*row)
+
+    def _show(self, x: Floats, y: Floats, t: float) -> None:
+        k = np.exp(-self.GAMMA * ((self.X - x) ** 2).sum(axis=1))
+        own = 1.0 - k @ self.inverse @ k
+        kept = np.ones(len(self.X), bool)
+        if own <= self.THRESHOLD:
+            return
+        if len(self.X) == self.ROWS:
+            faded = np.exp(-0.5 * ((t - self.t) / self.FADE_S) ** 2)
+            worth = faded / np.diag(self.inverse)
+            if own <= worth.min():
+                return
+            kept[worth.argmin()] = False
+        self.X, self.y = np.vstack([self.X[kept], x]), np.vstack([self.y[kept], y])
+        self.t, self.models = np.append(self.t[kept], t), []
+        apart = ((self.X[:, None] - self.X) ** 2).sum(axis=2)
+        self.inverse = np.linalg.inv(np.exp(-self.GAMMA * apart) + self.RIDGE * np.eye(len(apart)))
+
+    def answer(self, X: Floats) -> Floats:
+        if not self.models:
+            self.models = [SVR(C=10.0, gamma=self.GAMMA, epsilon=0.1, max_iter=200_000)
+                           .fit(self.X, target) for target in self.y.T]
+        return np.column_stack([model.predict(X) for model in self.models])
+
+
 class OfflineSvr(_Scaled):
     """ε-SVR with hindsight: C and γ by cross-validation in four contiguous folds, per target."""
 
@@ -332,12 +385,15 @@ def builtin_entries() -> list[Entry]:
             Entry("kelpie-small", "kelpie", partial(Kelpie, preset="small"),
                   "kelpie with the preset small."),
             Entry("kelpie-paper", "kelpie", KelpiePaper, _meaning(KelpiePaper))]
-    others = [Entry(f"rls-{forget}", "other", partial(LeastSquares, forget=forget),
-                    f"Recursive least squares of physics terms, λ {forget}.")
-              for forget in (0.99, 0.999, 0.9999)]
+    others = [Entry("fifo", "other", partial(KelpiePaper, forget="fifo"),
+                    "The paper's learner, which forgets the oldest row of a full buffer.")]
+    others += [Entry(f"rls-{forget}", "other", partial(LeastSquares, forget=forget),
+                     f"Recursive least squares of physics terms, λ {forget}.")
+               for forget in (0.99, 0.999, 0.9999)]
     if HAS_SKLEARN:
         others += [Entry(name, "other", made, _meaning(made), getattr(made, "offline", False))
-                   for name, made in (("sgd", LinearSgd), ("gp-window", GaussianProcessWindow),
+                   for name, made in (("sosvr", Sosvr), ("sgd", LinearSgd),
+                                      ("gp-window", GaussianProcessWindow),
                                       ("forest-window", ForestWindow), ("svr", OfflineSvr),
                                       ("trees", OfflineTrees))]
     return naive + ours + others

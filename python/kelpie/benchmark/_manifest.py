@@ -15,7 +15,8 @@ try:
 except ImportError as error:  # Python before 3.11
     raise ImportError("kelpie.benchmark: needs Python 3.11 or newer, which reads TOML") from error
 
-TRACKS = ("anytime", "open_loop", "changes", "rates", "hostile", "cost")
+TRACKS = ("anytime", "open_loop", "changes", "rates", "hostile", "cost", "paper")
+USUAL_TRACKS = TRACKS[:-1]  # where a data set names none
 
 
 class ManifestError(ValueError):
@@ -39,8 +40,9 @@ class Source:
     pieces: Optional[int] = None  # equal parts into which each file is cut
     configuration: Optional[str] = None  # column that says which vehicle drives
     truth: list[str] = field(default_factory=list)  # columns of targets without noise
+    held_out: list[str] = field(default_factory=list)  # columns of splits: 1 held out, 0 learned
     thin: int = 1  # every so many-th row of a run is taken
-    tracks: list[str] = field(default_factory=lambda: list(TRACKS))
+    tracks: list[str] = field(default_factory=lambda: list(USUAL_TRACKS))
     simulated: bool = False
     license: str = ""
     origin: str = ""
@@ -82,7 +84,8 @@ def checksum(path: Path) -> str:
 
 _KINDS = {"name": str, "files": list, "targets": list, "inputs": list, "states": list,
           "config": str, "time": str, "rate": float, "run": str, "gap": float, "pieces": int,
-          "configuration": str, "truth": list, "thin": int, "tracks": list, "simulated": bool,
+          "configuration": str, "truth": list, "held_out": list, "thin": int, "tracks": list,
+          "simulated": bool,
           "license": str, "origin": str, "conversion": str, "sha256": list}
 _REQUIRED = ("name", "files", "targets", "inputs")
 _NAMES = {list: "a list of texts", str: "a text", float: "a number above 0",

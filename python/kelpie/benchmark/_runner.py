@@ -126,6 +126,8 @@ def measure(entry: Entry, data: Dataset) -> dict[str, Any]:
         found["rates"] = _tracks.rates(entry, data)
     if "hostile" in wanted:
         found["hostile"] = _tracks.hostile(entry, data)
+    if "paper" in wanted:
+        found["paper"] = _tracks.paper(entry, data)
     return {name: value for name, value in found.items() if value is not None}
 
 

@@ -17,6 +17,7 @@ from ._entries import Entry
 
 PROTOCOL = 1
 BLOCK = 10  # rows of a block, at most
+LOOK = 200  # rows learned between two looks of the track paper
 POINTS = (50, 100, 200, 500)  # rows after which learners are asked; then as many times ten, …
 AFTER_CHANGE = (50, 100, 200, 500, 1000)  # rows after the begin of a stretch
 HORIZONS = (1, 10, 50, 100)  # steps in open loop
@@ -100,6 +101,35 @@ def points(rows: int, begins: list[int]) -> list[int]:
     for begin, end in zip(begins, [*begins[1:], rows]):
         wanted |= {begin + after for after in AFTER_CHANGE if begin + after <= end}
     return sorted(wanted)
+
+
+def paper(entry: Entry, data: Dataset) -> dict[str, Any]:
+    """Track paper: each split of all rows; R² on held-out rows of the present vehicle."""
+    whole = data.whole
+    assert whole is not None and whole.splits is not None  # load() made them for this track
+    found = []
+    for name, marks in whole.splits.items():
+        rows, held_out = whole.rows(marks == 0), whole.rows(marks == 1)
+        ends = {int(row) for row in np.flatnonzero(np.diff(rows.stretch)) + 1} | {len(rows.t)}
+        looks = sorted({*range(LOOK, len(rows.t), LOOK), *ends})
+        learner = Learner(entry, whole)
+        random = np.random.default_rng(whole.task.seed)
+        split: dict[str, Any] = {"name": name, "looks": []}
+        at = 0
+        for point in [len(rows.t)] if entry.offline else looks:
+            while at < point:
+                end = point if entry.offline else min(point, at + BLOCK)
+                learner.learn(rows.X[at:end], rows.y[at:end], rows.t[at:end])
+                at = end
+            vehicle = rows.vehicle[at - 1]
+            chosen = random.permutation(np.flatnonzero(held_out.vehicle == vehicle))
+            r2 = _r2(held_out, chosen, learner.predict(held_out.X[chosen]))
+            split["looks"].append({"rows": at, "t": float(rows.t[at - 1]), "vehicle": int(vehicle),
+                                   "ends": at in ends, "r2": r2})
+        _refuse_neighbours(learner, held_out, chosen)
+        split["final"] = clipped(split["looks"][-1]["r2"])
+        found.append(split)
+    return {"splits": found}
 
 
 def _r2(data: Dataset, rows: Any, predicted: Floats) -> list[float]:

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/live_library.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <iterator>
@@ -19,6 +14,7 @@
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
 #include "file/mapped_file.hpp"
+#include "file/run_program.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "model/model_axis.hpp"
@@ -33,26 +29,6 @@ std::string block_content(const TrainedModel& model, const BlockLayout& layout) 
   ModelBlock::clear(memory, layout);
   ModelBlock(memory, layout).publish(model.input_names, model.axes, model.alignment);
   return {reinterpret_cast<const char*>(memory.data()), memory.size()};  // NOLINT: bytes of a file
-}
-
-int run(std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) {
-    arguments.push_back(word.data());
-  }
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  const int error =
-      ::posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments.data(), environ);
-  if (error != 0) {
-    throw Failure("the C compiler '" + words[0] +
-                  "' cannot be run: " + std::generic_category().message(error) +
-                  "; the environment variable CC names another");
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return status;
 }
 
 // The compiler of CC, which may have words more, as in "ccache cc".
@@ -90,7 +66,8 @@ class LibraryDraft {
     const std::string compiler = join_text(words, " ");
     words.insert(words.end(), {"-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
                                library_.string(), source_.string(), "-lm"});
-    if (run(std::move(words)) != 0) {
+    if (file::run_program(std::move(words), "the C compiler",
+                          "the environment variable CC names another") != 0) {
       throw Failure("the C compiler '" + compiler + "' could not compile " + files.source.string());
     }
   }
