@@ -198,15 +198,18 @@ std::string matrix_figure(const Json& study, std::size_t axis) {
                        text_of(study["axes"][axis]) + ": off-line models on each configuration");
   const Json& models = study["offline"][axis]["models"];
   for (std::size_t i = 0; i < models.size(); ++i) {
+    // A place for the bar of every model, so that bars are as wide as a place.
     std::vector<chart::Point> bars;
     for (std::size_t k = 0; k < models.size(); ++k) {
-      bars.push_back(
-          {static_cast<double>(k) + 0.25 * (static_cast<double>(i) - 0.5 * (count - 1.0)),
-           number_of(models[i]["r2"][k])});
+      for (std::size_t j = 0; j < models.size(); ++j) {
+        const double place = 0.25 * (static_cast<double>(j) - 0.5 * (count - 1.0));
+        bars.push_back({static_cast<double>(k) + place,
+                        j == i ? number_of(models[i]["r2"][k]) : std::nan("")});
+      }
     }
     figure.bars(bars, i, fmt::format("trained on {}", i + 1));
   }
-  return figure.html(text_of(study["axes"][axis]));
+  return figure.html(text_of(study["axes"][axis]) + ", " + title_of(study) + ".");
 }
 
 std::vector<chart::Point> points_of(const Json& x, const Json& y) {
@@ -257,7 +260,8 @@ std::string stream_figure(const Json& study, const std::vector<std::string>& key
     from = to;
   }
   figure.line(steps, kBaselineStyle, "off-line baseline");
-  return figure.html(text_of(study["axes"][axis]) + "; what lies below −0.2 is outside.");
+  return figure.html(text_of(study["axes"][axis]) + ", " + title_of(study) +
+                     "; the figure ends at −0.2.");
 }
 
 // The held-out rows at the end of a stage, true and predicted.
@@ -268,8 +272,8 @@ std::string prediction_figure(const Json& study, std::size_t axis, std::size_t s
                        text_of(study["axes"][axis]) + ": held-out rows, true and predicted");
   figure.line(points_of(shown["time_s"], shown["truth"]), 0, "true");
   figure.line(points_of(shown["time_s"], shown["predicted"]), 1, "predicted");
-  return figure.html(fmt::format("{}, end of configuration {}; R² {} on all of its held-out rows.",
-                                 text_of(study["axes"][axis]),
+  return figure.html(fmt::format("{}, {}, end of configuration {}; R² {} on all held-out rows.",
+                                 text_of(study["axes"][axis]), title_of(study),
                                  study["stages"][stage].get<int>() + 1,
                                  chart::decimal(number_of(row["ends"][0][stage][axis]))));
 }
