@@ -105,7 +105,7 @@ py::dict dict_of(const log::Log& log) {
   found["words"] = words;
   found["units"] = units_of(log);
   found["losses"] = log.losses;
-  found["draft"] = log.draft ? log.draft->toml : "";
+  found["draft"] = log.draft ? log.draft->toml() : "";
   add_roles(log, found);
   return found;
 }

@@ -16,6 +16,9 @@ enum class Frame { flu, frd, enu, ned };
 /// Throws InputError naming the four frames.
 Frame frame_from(const std::string& name);
 
+/// "FLU".
+std::string frame_name(Frame frame);
+
 /// Converts a vector between two vehicle frames or two world frames: velocities, accelerations,
 /// forces, and rates, because the conversions are rotations. Its own inverse.
 /// Throws InputError for a vehicle frame and a world frame, whose relation is the attitude.

@@ -15,16 +15,25 @@ bool is_of_vehicle(Frame frame) {
   return frame == Frame::flu || frame == Frame::frd;
 }
 
+// In the order of Frame.
+const std::array<std::string, 4>& frames() {
+  static const std::array<std::string, 4> kNames{"FLU", "FRD", "ENU", "NED"};
+  return kNames;
+}
+
 }  // namespace
 
 Frame frame_from(const std::string& name) {
-  const std::array<std::string, 4> names{"FLU", "FRD", "ENU", "NED"};
-  const auto* const found = std::ranges::find(names, name);
-  if (found == names.end()) {
-    throw InputError("'" + name + "' is no frame" + did_you_mean(name, names) +
+  const auto* const found = std::ranges::find(frames(), name);
+  if (found == frames().end()) {
+    throw InputError("'" + name + "' is no frame" + did_you_mean(name, frames()) +
                      "; frames are FLU and FRD (vehicle), ENU and NED (world)");
   }
-  return static_cast<Frame>(found - names.begin());
+  return static_cast<Frame>(found - frames().begin());
+}
+
+std::string frame_name(Frame frame) {
+  return frames().at(static_cast<std::size_t>(frame));
 }
 
 Triple converted(const Triple& vector, Frame from, Frame to) {

@@ -188,11 +188,6 @@ StreamPlan plan_of(const log::LogConfig& config) {
   });
 }
 
-std::string name_of(Frame frame) {
-  constexpr std::array<const char*, 4> kNames{"FLU", "FRD", "ENU", "NED"};
-  return kNames[static_cast<std::size_t>(frame)];
-}
-
 std::string names_of(const std::array<std::string, 3>& columns) {
   return fmt::format("{},{},{}", columns[0], columns[1], columns[2]);
 }
@@ -296,8 +291,8 @@ Fields Configuration::identity() const {
   std::string vectors;
   std::string attitudes;
   for (const StreamPlan::Vector& vector : plan.vectors) {
-    vectors += fmt::format("{} from {} to {};", names_of(vector.columns), name_of(vector.from),
-                           name_of(vector.to));
+    vectors += fmt::format("{} from {} to {};", names_of(vector.columns), frame_name(vector.from),
+                           frame_name(vector.to));
     attitudes += vector.attitude.empty() ? ""
                                          : fmt::format("{} in {};", join_text(vector.attitude, ","),
                                                        vector.is_in_degrees ? "deg" : "rad");
@@ -364,11 +359,10 @@ Configuration draft_configuration(const log::LogSource& source, const std::vecto
                                   std::string& summary) {
   const log::Draft draft = log::draft_of(source);
   if (!draft.is_complete()) {
-    throw InputError({.file = source.path, .line = 0, .field = {}}, draft.unclear(source.path));
+    throw InputError({.file = source.path, .line = 0, .field = {}}, draft.unclear());
   }
-  summary = draft.summary(source.path);
-  const std::string name = "the draft for " + source.path;
-  return read_configuration(file::TomlNode::parse(draft.toml, name), name, set);
+  summary = draft.summary();
+  return configuration_of(file::TomlNode::parse("", source.path), source.path, draft.config, set);
 }
 
 namespace {

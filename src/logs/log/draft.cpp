@@ -1,45 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "log/draft.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 #include <vector>
 
 #include "core/text.hpp"
-#include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
-#include "log/draft_plan.hpp"
+#include "log/draft_pose.hpp"
 #include "log/pose_check.hpp"
 
 namespace kelpie::log {
 namespace {
 
 // A table whose columns have the usual names needs no sampling: its rows are samples.
-std::optional<DraftPlan> plan_of_ready(const Table& table, const Roles& given) {
-  Roles roles;
+std::optional<Draft> draft_of_ready(const Table& table, const Roles& given) {
+  Draft draft;
   try {
-    roles = guess_roles(table, {.time = given.time, .rate_hz = given.rate_hz});
+    const Roles found = guess_roles(table, {.time = given.time, .rate_hz = given.rate_hz});
+    draft.config.roles = {.inputs = found.inputs,
+                          .targets = found.targets,
+                          .time = found.time,
+                          .rate_hz = found.rate_hz};
   } catch (const InputError&) {
     return std::nullopt;
   }
-  DraftPlan plan;
-  plan.inputs = roles.inputs;
-  plan.targets = roles.targets;
-  plan.time = roles.time;
-  plan.rate_hz = roles.rate_hz;
-  plan.rate_why = "as given";
-  plan.taken = {"inputs and targets by their names: a target is udot, u_dot or du beside u"};
-  if (plan.time.empty() && plan.rate_hz == 0.0) {
-    plan.open.emplace_back(
+  draft.whys["rate"] = "as given";
+  draft.taken = {"inputs and targets by their names: a target is udot, u_dot or du beside u"};
+  if (draft.config.roles.time.empty() && draft.config.roles.rate_hz == 0.0) {
+    draft.open.emplace_back(
         "rate: no column is named t, time or stamp; write rate = rows per second");
   }
-  return plan;
+  return draft;
 }
 
 // "the fields that change are a, b, c and 20 more"; "" without any.
-std::string fields_text(const std::vector<DraftPlan::Line>& fields) {
+std::string fields_text(const std::vector<Draft::Line>& fields) {
   constexpr std::size_t kShown = 30;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::min(fields.size(), kShown); ++i) {
@@ -49,15 +49,6 @@ std::string fields_text(const std::vector<DraftPlan::Line>& fields) {
   return names.empty() ? ""
                        : "the fields that change are " + join_text(names, ", ") +
                              (more > 0 ? " and " + std::to_string(more) + " more" : "");
-}
-
-Draft written(const DraftPlan& plan, const std::string& log, const std::string& definitions) {
-  return {.toml = draft_text(plan, log, definitions),
-          .taken = plan.taken,
-          .remarks = plan.remarks,
-          .open = plan.open,
-          .fields = plan.open.empty() ? "" : fields_text(plan.others),
-          .has_targets = !plan.targets.empty()};
 }
 
 // What is missing may be in topics that nobody can read: "/a, /b: pkg/Type: its definition …".
@@ -92,51 +83,76 @@ std::set<std::string> topics_of_world(const bag::BagReport& report, const LogSou
   return topics;
 }
 
-}  // namespace
-
-LogConfig Draft::config(const std::string& source) const {
-  return read_log_config(file::TomlNode::parse(toml, "the draft for " + source));
+// Poses, and the columns beside them, are columns of numbers; each part of a pose is named once.
+void check_given(const Table& table, const Roles& given) {
+  std::set<std::string> parts;
+  for (const std::string& text : given.pose) {
+    const auto [part, column] = pose_part(text);
+    table.require_numbers(table.find(column));
+    if (part.empty()) {
+      throw InputError({.file = table.source, .field = text},
+                       "names no part of a pose; write x=" + column +
+                           ", or y, z, roll, pitch, yaw, qw, qx, qy, qz");
+    }
+    if (!parts.insert(part).second) {
+      throw InputError({.file = table.source, .field = text}, "names " + part + " a second time");
+    }
+  }
+  for (const std::string& name : given.pose.empty() ? std::vector<std::string>{} : given.inputs) {
+    if (std::ranges::count(StreamPlan::Pose::kVelocities, name) == 0) {
+      table.require_numbers(table.find(name));
+    }
+  }
 }
 
-std::string Draft::unclear(const std::string& source, const std::string& more) const {
+}  // namespace
+
+std::string Draft::unclear(const std::string& more) const {
   std::vector<std::string> lines = open;
-  for (const std::string& line : {more, fields}) {
+  for (const std::string& line : {more, fields_text(others)}) {
     if (!line.empty()) {
       lines.push_back(line);
     }
   }
   return "the signals to use are unclear:\n  - " + join_text(lines, "\n  - ") +
-         "\n`kelpie inspect " + source +
+         "\n`kelpie inspect " + config.source +
          " --template vehicle.toml` writes what was found; complete it, and give it by --config";
 }
 
-std::string Draft::summary(const std::string& source) const {
-  std::string text = source + ": no configuration; taken by types and names:\n";
+std::string Draft::summary() const {
+  std::string text = config.source + ": no configuration; taken by types and names:\n";
   for (const std::string& line : taken) {
     text += "  " + line + "\n";
   }
   for (const std::string& line : remarks) {
     text += "  ! " + line + "\n";
   }
-  return text + "to look at it and change it: kelpie inspect " + source +
+  return text + "to look at it and change it: kelpie inspect " + config.source +
          " --template vehicle.toml\n";
 }
 
 Draft draft_of(const bag::BagReport& report, const LogSource& source) {
-  DraftPlan plan = plan_draft(report, {}, topics_of_world(report, source));
-  if (!plan.open.empty()) {
+  Draft draft = plan_draft(report, {}, topics_of_world(report, source));
+  if (!draft.open.empty()) {
     const std::vector<std::string> lines = undecoded(report);
-    plan.open.insert(plan.open.end(), lines.begin(), lines.end());
+    draft.open.insert(draft.open.end(), lines.begin(), lines.end());
   }
-  return written(plan, source.path, source.definitions);
+  draft.config.source = source.path;
+  if (!source.definitions.empty()) {
+    draft.config.messages = std::filesystem::absolute(source.definitions).lexically_normal();
+  }
+  return draft;
 }
 
 Draft draft_of(const Table& table, const Roles& given) {
-  if (const std::optional<DraftPlan> ready = plan_of_ready(table, given)) {
-    return written(*ready, table.source, "");
+  check_given(table, given);
+  std::optional<Draft> draft = given.pose.empty() ? draft_of_ready(table, given) : std::nullopt;
+  if (!draft) {
+    const RowClock clock = row_clock(table, given);
+    draft = plan_draft(inspect_table(table, clock), clock, {}, given);
   }
-  const RowClock clock = row_clock(table, given);
-  return written(plan_draft(inspect_table(table, clock), clock, {}), table.source, "");
+  draft->config.source = table.source;
+  return *std::move(draft);
 }
 
 }  // namespace kelpie::log

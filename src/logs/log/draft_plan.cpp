@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/draft_plan.hpp"
+#include "log/draft.hpp"
 
 #include <fmt/format.h>
 
@@ -107,56 +107,63 @@ struct SignalRates {
   double commands_hz;  // of the slowest command
 };
 
-void choose_rate(const RowClock& clock, const SignalRates& rates, DraftPlan& plan) {
+void choose_rate(const RowClock& clock, const SignalRates& rates, Draft& draft) {
   constexpr double kSlowestPose = 0.2;  // rows per second, by hand
+  Roles& roles = draft.config.roles;
+  StreamPlan& plan = draft.config.plan;
+  const bool is_of_poses = !draft.pose.lines.empty();
   if (!clock.problem.empty()) {
-    plan.open.push_back(clock.problem);
-  } else if (!plan.pose.empty() && rates.moving_hz < kSlowestPose && !clock.unit.empty()) {
-    plan.open.push_back(fmt::format(
+    draft.open.push_back(clock.problem);
+  } else if (is_of_poses && rates.moving_hz < kSlowestPose && !clock.unit.empty()) {
+    draft.open.push_back(fmt::format(
         "time: the column {0} gives {1:.3g} rows per second, which is hardly in s: --units {0}={2} "
         "says that it is in {2}",
-        plan.time, rates.moving_hz, clock.unit));
+        roles.time, rates.moving_hz, clock.unit));
   }
-  if (plan.targets.empty()) {
+  if (roles.targets.empty()) {
     return;
   }
   if (!(rates.moving_hz > 0.0)) {
     if (clock.problem.empty()) {
-      plan.open.emplace_back("velocities: their times tell no rate");
+      draft.open.emplace_back("velocities: their times tell no rate");
     }
     return;
   }
   const double wanted = std::clamp(kTuning.wanted_rows / std::max(rates.duration_s, 1.0),
                                    kTuning.usual_rate_hz, kTuning.fastest_rate_hz);
-  plan.rate_hz = std::min(wanted, rates.moving_hz);
-  plan.rate_hz = plan.rate_hz > 1.0 ? std::floor(plan.rate_hz + 0.1) : plan.rate_hz;
-  plan.rate_why = plan.rate_hz < wanted - 1.0            ? "velocities come no faster"
-                  : wanted > kTuning.usual_rate_hz + 1.0 ? "the log is short"
-                                                         : "enough for a vehicle";
+  double rate_hz = std::min(wanted, rates.moving_hz);
+  rate_hz = rate_hz > 1.0 ? std::floor(rate_hz + 0.1) : rate_hz;
+  draft.whys["rate"] = rate_hz < wanted - 1.0                 ? "velocities come no faster"
+                       : wanted > kTuning.usual_rate_hz + 1.0 ? "the log is short"
+                                                              : "enough for a vehicle";
   if (clock.rate_hz > 0.0) {
-    plan.rate_hz = clock.rate_hz;
-    plan.rate_why = "as given";
+    rate_hz = clock.rate_hz;
+    draft.whys["rate"] = "as given";
   }
+  roles.rate_hz = std::stod(fmt::format("{:.4g}", rate_hz));  // as the file says
   double slowest = rates.moving_hz;
   for (const CandidateColumn& column : rates.used) {
     slowest = std::min(slowest, column.rate_hz);
   }
-  plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0, kTuning.longest_gap_s);
-  plan.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
-  if (clock.problem.empty() && plan.pose.empty() &&
-      plan.window_s > stream::kTuning.longest_window_s) {
-    plan.open.push_back(fmt::format(
+  plan.gap_s = std::clamp(std::ceil(30.0 / slowest) / 10.0, 1.0,
+                          is_of_poses ? kInfinity : kTuning.longest_gap_s);
+  if (is_of_poses) {
+    return;
+  }
+  plan.derivative.window_s = std::max(0.5, std::ceil(60.0 / rates.moving_hz) / 10.0);
+  if (clock.problem.empty() && plan.derivative.window_s > stream::kTuning.longest_window_s) {
+    draft.open.push_back(fmt::format(
         "velocities come every {:.3g} s, too slowly for accelerations, which are slopes over six "
         "samples and {:g} s at most; a column of measured accelerations can be named by "
         "--targets{}",
         1.0 / rates.moving_hz, stream::kTuning.longest_window_s,
         clock.unit.empty()
             ? ""
-            : fmt::format("; stamps in {0} are told by --units {1}={0}", clock.unit, plan.time)));
+            : fmt::format("; stamps in {0} are told by --units {1}={0}", clock.unit, roles.time)));
   }
 }
 
-void choose_clock(const SignalRates& rates, DraftPlan& plan) {
+void choose_clock(const SignalRates& rates, Draft& draft) {
   double low = kInfinity;
   double high = -kInfinity;
   for (const CandidateColumn& column : rates.used) {
@@ -167,50 +174,50 @@ void choose_clock(const SignalRates& rates, DraftPlan& plan) {
     high = std::max(high, column.stamps->median_s);
   }
   if (high - low <= kTuning.farthest_stamps_s) {
-    plan.clock = bag::Clock::header;
+    draft.config.clock = bag::Clock::header;
   }
 }
 
-void say_what_is_slow(const SignalRates& rates, DraftPlan& plan) {
+void say_what_is_slow(const SignalRates& rates, Draft& draft) {
   if (rates.commands_hz < kTuning.slow_hz) {
-    plan.remarks.push_back(
+    draft.remarks.push_back(
         fmt::format("commands come at {:.2g} Hz; the log misses faster changes of thrust, "
                     "which limits the model: record at 10 Hz or more",
                     rates.commands_hz));
   }
-  if (rates.moving_hz < kTuning.slow_hz && plan.pose.empty()) {
-    plan.remarks.push_back(fmt::format(
+  if (rates.moving_hz < kTuning.slow_hz && draft.pose.lines.empty()) {
+    draft.remarks.push_back(fmt::format(
         "velocities come at {:.2g} Hz: accelerations are slopes over {:.2g} s, and what is "
         "faster can't be seen",
-        rates.moving_hz, plan.window_s));
+        rates.moving_hz, draft.config.plan.derivative.window_s));
   }
-  const double rows = plan.rate_hz * rates.duration_s;
-  if (!plan.targets.empty() && rows < kTuning.few_rows) {
-    plan.remarks.push_back(
+  const double rows = draft.config.roles.rate_hz * rates.duration_s;
+  if (!draft.config.roles.targets.empty() && rows < kTuning.few_rows) {
+    draft.remarks.push_back(
         fmt::format("{:.0f} rows are few: scores on the last rows are uncertain", rows));
   }
 }
 
 // Of a file of MATLAB: how fast its rows were taken nobody can tell.
-void ask_for_row_times(const bag::BagReport& report, const SignalRates& rates, DraftPlan& plan) {
+void ask_for_row_times(const bag::BagReport& report, const SignalRates& rates, Draft& draft) {
   for (const bag::TopicReport& topic : report.topics) {
     const bool is_used = std::ranges::any_of(
         rates.used, [&](const CandidateColumn& column) { return column.topic == topic.name; });
     if ((is_used || rates.used.empty()) && topic.type == "matlab/RowsWithoutTime") {
-      plan.open.push_back("time: the rows of " + topic.name +
-                          " have none; name their time by time, or write how many there are per "
-                          "second by rate");
+      draft.open.push_back("time: the rows of " + topic.name +
+                           " have none; name their time by time, or write how many there are per "
+                           "second by rate");
     }
   }
 }
 
-// Chooses rate and clock of the rows, and notes slow signals. Requires the plan's targets.
+// Chooses rate and clock of the rows, and notes slow signals. Requires the draft's targets.
 void plan_times(const bag::BagReport& report, const RowClock& clock, const SignalRates& rates,
-                DraftPlan& plan) {
-  ask_for_row_times(report, rates, plan);
-  choose_rate(clock, rates, plan);
-  choose_clock(rates, plan);
-  say_what_is_slow(rates, plan);
+                Draft& draft) {
+  ask_for_row_times(report, rates, draft);
+  choose_rate(clock, rates, draft);
+  choose_clock(rates, draft);
+  say_what_is_slow(rates, draft);
 }
 
 constexpr std::array<const char*, 6> kAxes{"u", "v", "w", "p", "q", "r"};
@@ -253,9 +260,11 @@ DraftUnit draft_unit(const std::string& given) {
 
 class Planner {
  public:
-  Planner(const bag::BagReport& report, RowClock clock, const std::set<std::string>& of_world)
+  Planner(const bag::BagReport& report, const RowClock& clock,
+          const std::set<std::string>& of_world, const Roles& given)
       : report_(report),
-        clock_(std::move(clock)),
+        clock_(clock),
+        given_(given),
         all_(find_candidates(report)),
         motors_(motor_outputs(report.autopilot.parameters)),
         is_submarine_(is_submarine(report)) {
@@ -265,16 +274,21 @@ class Planner {
         one.why = "along the axes of the world, as the poses of the same messages show";
       }
     }
-    plan_.time = clock_.column;
-    plan_.is_of_bag = report.topics.size() != 1 || !report.topics.front().name.empty();
+    roles_.time = clock_.column;
+    draft_.is_of_bag = report.topics.size() != 1 || !report.topics.front().name.empty();
   }
 
-  DraftPlan run() {
+  Draft run() {
     keep_thrusters();
-    const std::optional<Candidate> velocity = choose(Part::velocity, "velocities", "");
-    const std::optional<Candidate> rates =
-        choose(Part::rates, "rates", velocity ? topic_of(*velocity) : "");
-    const std::optional<Candidate> commands = choose(Part::commands, "commands", "");
+    std::optional<Candidate> velocity;
+    std::optional<Candidate> rates;
+    if (given_.pose.empty()) {
+      velocity = choose(Part::velocity, "velocities", "");
+      rates = choose(Part::rates, "rates", velocity ? topic_of(*velocity) : "");
+    }
+    const std::optional<Candidate> commands = given_.pose.empty() || given_.inputs.empty()
+                                                  ? choose(Part::commands, "commands", "")
+                                                  : given_inputs();
     if (velocity) {
       take_motion(*velocity, 0);
       take_validity(topic_of(*velocity));
@@ -290,18 +304,21 @@ class Planner {
     if (commands) {
       take_commands(*commands);
     } else if (!is_asked(Part::commands)) {
-      plan_.open.push_back(none_known(Part::commands, "commands"));
+      draft_.open.push_back(none_known(Part::commands, "commands"));
     }
+    take_labels();
     keep_armed();
-    const double duration_s = plan_.armed_only ? report_.autopilot.armed_s : report_.duration_s;
-    plan_times(report_, clock_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, plan_);
+    const double duration_s =
+        draft_.config.armed_only ? report_.autopilot.armed_s : report_.duration_s;
+    plan_times(report_, clock_, {used_, duration_s, moving_rate_hz_, command_rate_hz_}, draft_);
     take_voltage();
     take_heading();
-    if (plan_.is_of_bag && (plan_.states.empty() || plan_.commands.empty())) {
+    if (draft_.is_of_bag && (draft_.states.empty() || draft_.commands.empty())) {
       list_fields();
     }
     tell_unused();
-    return std::move(plan_);
+    put_sources();
+    return std::move(draft_);
   }
 
  private:
@@ -342,16 +359,20 @@ class Planner {
     std::erase_if(all_, [](const Candidate& one) { return one.columns.empty(); });
     const std::string frame = sub_frame_name(report_.autopilot.parameters);
     if (!frame.empty()) {
-      plan_.taken.push_back("ArduSub's frame: " + frame);
+      draft_.taken.push_back("ArduSub's frame: " + frame);
     }
     if (const std::string others = other_outputs_text(report_.autopilot.parameters);
         !motors_.empty() && !others.empty()) {
-      plan_.remarks.push_back("no thrusters by SERVOn_FUNCTION, not taken: outputs " + others);
+      draft_.remarks.push_back("no thrusters by SERVOn_FUNCTION, not taken: outputs " + others);
     }
   }
 
+  // Columns that the caller names (given_inputs()) keep their names.
   std::vector<std::string> command_names(const Candidate& one) const {
     std::vector<std::string> names = short_names(one.columns);
+    if (one.what.empty()) {
+      std::ranges::transform(one.columns, names.begin(), &CandidateColumn::name);
+    }
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (const MotorActuator* const motor = motor_at(one.columns[k])) {
         names[k] = fmt::format("m{}", motor->motor);
@@ -363,25 +384,25 @@ class Planner {
   void keep_armed() {
     const bag::AutopilotReport& autopilot = report_.autopilot;
     if (autopilot.was_armed && autopilot.was_disarmed) {
-      plan_.armed_only = true;
-      plan_.taken.push_back(fmt::format("rows while the motors are armed: {:.0f} s of {:.0f} s",
-                                        autopilot.armed_s, report_.duration_s));
+      draft_.config.armed_only = true;
+      draft_.taken.push_back(fmt::format("rows while the motors are armed: {:.0f} s of {:.0f} s",
+                                         autopilot.armed_s, report_.duration_s));
     } else if (autopilot.was_disarmed) {
-      plan_.remarks.emplace_back("the motors are never armed in this log; its rows are kept");
+      draft_.remarks.emplace_back("the motors are never armed in this log; its rows are kept");
     }
   }
 
   // Beside the rows; a message without the clock of the others can't be.
   void take_voltage() {
     const auto found = std::ranges::find(all_, Part::voltage, &Candidate::part);
-    if (found == all_.end() || plan_.targets.empty()) {
+    if (found == all_.end() || roles_.targets.empty()) {
       return;
     }
     const CandidateColumn& column = found->columns.front();
-    const bool is_taken = plan_.clock == bag::Clock::receive || column.stamps.has_value();
-    DraftPlan::Group group{.head = found->what + ": battery voltage, " + found->why,
-                           .lines = {},
-                           .is_taken = is_taken};
+    const bool is_taken = draft_.config.clock == bag::Clock::receive || column.stamps.has_value();
+    Draft::Group group{.head = found->what + ": battery voltage, " + found->why,
+                       .lines = {},
+                       .is_taken = is_taken};
     if (is_taken) {
       add_line(group, "voltage", column);
     } else {
@@ -389,13 +410,13 @@ class Planner {
       group.head += column.unit == "mV" ? ", and scale the column by 0.001 to have V" : "";
       group.lines.push_back({"voltage", column.name, signal_why(column)});
     }
-    plan_.states.push_back(std::move(group));
+    draft_.states.push_back(std::move(group));
   }
 
   // Of a table, beside the rows: a current is found by it. Rows end with the first signal to end,
   // so a heading that is not there in every row is none.
   void take_heading() {
-    if (plan_.is_of_bag || plan_.targets.empty() || !plan_.pose.empty()) {
+    if (draft_.is_of_bag || roles_.targets.empty() || !draft_.pose.lines.empty()) {
       return;
     }
     const bag::TopicReport& topic = report_.topics.front();
@@ -406,10 +427,10 @@ class Planner {
       return;
     }
     if (const CandidateColumn column = column_of(topic, *field); column.varies()) {
-      DraftPlan::Group group{.head = "the heading, for the current: a column beside, no input",
-                             .lines = {}};
+      Draft::Group group{.head = "the heading, for the current: a column beside, no input",
+                         .lines = {}};
       add_line(group, "psi", column);
-      plan_.states.push_back(std::move(group));
+      draft_.states.push_back(std::move(group));
     }
   }
 
@@ -442,10 +463,10 @@ class Planner {
     std::vector<std::string> names;
     std::size_t more = 0;
     for (const bag::FieldRange& field :
-         plan_.is_of_bag ? std::vector<bag::FieldRange>{} : report_.topics.front().fields) {
+         draft_.is_of_bag ? std::vector<bag::FieldRange>{} : report_.topics.front().fields) {
       const CandidateColumn column = column_of(report_.topics.front(), field);
       const bool is_of_draft =
-          field.path == plan_.time || !column.varies() || !can_be_written(column.name) ||
+          field.path == roles_.time || !column.varies() || !can_be_written(column.name) ||
           std::ranges::find(used_, column.name, &CandidateColumn::name) != used_.end();
       if (!is_of_draft && names.size() < kShown) {
         names.push_back(column.name);
@@ -454,8 +475,8 @@ class Planner {
       }
     }
     if (!names.empty()) {
-      plan_.taken.push_back("not used: " + join_text(names, ", ") +
-                            (more > 0 ? fmt::format(" and {} more", more) : ""));
+      draft_.taken.push_back("not used: " + join_text(names, ", ") +
+                             (more > 0 ? fmt::format(" and {} more", more) : ""));
     }
   }
 
@@ -465,8 +486,8 @@ class Planner {
       for (const bag::FieldRange& field : topic.fields) {
         const CandidateColumn column = column_of(topic, field);
         if (column.varies() && field.elements.empty() && can_be_written(column.name) &&
-            plan_.others.size() < kMost) {
-          plan_.others.push_back({{}, column.name, signal_why(column)});
+            draft_.others.size() < kMost) {
+          draft_.others.push_back({{}, column.name, signal_why(column)});
         }
       }
     }
@@ -482,7 +503,7 @@ class Planner {
         continue;
       }
       if (!varies(one)) {
-        plan_.remarks.push_back(fmt::format("{}: constant, not taken for {}", one.what, name));
+        draft_.remarks.push_back(fmt::format("{}: constant, not taken for {}", one.what, name));
         still_.try_emplace(part, one.what);
       } else if (likely.empty() || one.rank == likely.front()->rank) {
         likely.push_back(&one);
@@ -502,7 +523,7 @@ class Planner {
         names.push_back(one->what);
         write_as_comment(*one, "one of several readings: ");
       }
-      plan_.open.push_back(fmt::format("{}: {}: which of them?", name, join_text(names, ", or ")));
+      draft_.open.push_back(fmt::format("{}: {}: which of them?", name, join_text(names, ", or ")));
       return std::nullopt;
     }
     if (part == Part::commands) {
@@ -517,7 +538,7 @@ class Planner {
     if (one.columns.size() > kMostInputs) {
       return;
     }
-    DraftPlan::Group group{.head = why + one.what + ": " + one.why, .lines = {}, .is_taken = false};
+    Draft::Group group{.head = why + one.what + ": " + one.why, .lines = {}, .is_taken = false};
     const std::vector<std::string> names = one.part == Part::commands
                                                ? command_names(one)
                                                : names_of_axes(one.part == Part::velocity ? 0 : 3);
@@ -526,25 +547,28 @@ class Planner {
         group.lines.push_back({names[k], one.columns[k].name, signal_why(one.columns[k])});
       }
     }
-    (one.part == Part::commands ? plan_.commands : plan_.states).push_back(std::move(group));
+    (one.part == Part::commands ? draft_.commands : draft_.states).push_back(std::move(group));
   }
 
   static std::vector<std::string> names_of_axes(std::size_t first) {
     return {kAxes[first], kAxes[first + 1], kAxes[first + 2]};
   }
 
-  void add_line(DraftPlan::Group& group, const std::string& name, const CandidateColumn& column) {
+  void add_line(Draft::Group& group, const std::string& name, const CandidateColumn& column) {
     group.lines.push_back({name, column.name, signal_why(column)});
     used_.push_back(column);
     const DraftUnit unit = draft_unit(column.unit);
+    StreamPlan::Source& source = plan_.sources.emplace_back();
+    source.name = name;
+    source.from = column.name;
     if (unit.factor != 1.0) {
-      plan_.scales.push_back(
-          {name, fmt::format("{}", unit.factor), fmt::format("{} to {}", column.unit, unit.text)});
+      source.scale = unit.factor;
+      draft_.whys["scale." + name] = fmt::format("{} to {}", column.unit, unit.text);
     }
     if (!unit.text.empty()) {
-      plan_.units.push_back({name, unit.text, {}});
+      roles_.units[name] = unit.text;
     }
-    plan_.taken.push_back(fmt::format("{} = {} ({})", name, column.name, signal_why(column)));
+    draft_.taken.push_back(fmt::format("{} = {} ({})", name, column.name, signal_why(column)));
   }
 
   // Of velocities that are turned into the body's axes all three have to be there; ranges don't
@@ -553,7 +577,7 @@ class Planner {
     const std::size_t first = one.part == Part::velocity ? 0 : 3;
     const bool is_of_world =
         one.part == Part::velocity && (one.frame == "NED" || one.frame == "ENU");
-    DraftPlan::Group group{
+    Draft::Group group{
         .head = one.what + ": " + (one.frame.empty() ? "" : one.frame + ": ") + one.why,
         .lines = {}};
     double widest = 0.0;
@@ -576,8 +600,8 @@ class Planner {
         moving_rate_hz_ = std::min(moving_rate_hz_, column.rate_hz);
       }
     }
-    plan_.states.insert(plan_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
-                        std::move(group));
+    draft_.states.insert(draft_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
+                         std::move(group));
   }
 
   // What the velocity's message says of itself, where that is not always good.
@@ -590,10 +614,12 @@ class Planner {
     if (field == topic->fields.end() || field->low >= known->second || !can_be_written(name)) {
       return;
     }
-    const std::string least = fmt::format("{:g}", known->second);
-    plan_.valid.push_back({name + ":" + known->first, least,
-                           fmt::format("{:g} to {:g} in this log", field->low, field->high)});
-    plan_.taken.push_back(fmt::format("velocities where {} is {} or more", known->first, least));
+    const std::string column = name + ":" + known->first;
+    draft_.config.valid[column] = known->second;
+    draft_.whys["valid." + column] =
+        fmt::format("{:g} to {:g} in this log", field->low, field->high);
+    draft_.taken.push_back(
+        fmt::format("velocities where {} is {:g} or more", known->first, known->second));
   }
 
   // The attitude of the world `frame`, of `topic` before all others; or null.
@@ -622,7 +648,7 @@ class Planner {
       return;
     }
     if (best == nullptr) {
-      plan_.open.push_back(
+      draft_.open.push_back(
           fmt::format("velocities: {} is of the world ({}), and there is no attitude to turn it by",
                       velocity.what, velocity.frame));
       return;
@@ -631,7 +657,7 @@ class Planner {
     const std::vector<std::string> names = is_angles
                                                ? std::vector<std::string>{"phi", "theta", "psi"}
                                                : std::vector<std::string>{"qw", "qx", "qy", "qz"};
-    DraftPlan::Group group{.head = best->what + ": " + best->why, .lines = {}};
+    Draft::Group group{.head = best->what + ": " + best->why, .lines = {}};
     bool is_in_degrees = false;
     for (std::size_t k = 0; k < names.size(); ++k) {
       const CandidateColumn& column = best->columns[k];
@@ -641,30 +667,71 @@ class Planner {
     if (is_submarine_ && is_angles) {
       angles_ = {names[0], names[1]};
     }
-    plan_.states.insert(plan_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
-                        std::move(group));
+    draft_.states.insert(draft_.states.begin() + static_cast<std::ptrdiff_t>(taken_groups_++),
+                         std::move(group));
     if (!is_of_world) {
       return;
     }
-    plan_.vectors.push_back(fmt::format(
-        R"({{columns = ["u", "v", "w"], from = "{}", to = "{}", attitude = ["{}"]{}}})",
-        velocity.frame, velocity.frame == "NED" ? "FRD" : "FLU", join_text(names, "\", \""),
-        is_angles && is_in_degrees ? ", angles = \"deg\"" : ""));
+    plan_.vectors.push_back({.columns = {"u", "v", "w"},
+                             .from = frame_from(velocity.frame),
+                             .to = velocity.frame == "NED" ? Frame::frd : Frame::flu,
+                             .attitude = names,
+                             .is_in_degrees = is_angles && is_in_degrees});
+  }
+
+  // A column of the table that the caller names.
+  CandidateColumn given_column(const std::string& name) const {
+    const bag::TopicReport& topic = report_.topics.front();
+    return column_of(topic, *std::ranges::find(topic.fields, name, &bag::FieldRange::path));
+  }
+
+  // "x", "yaw=psi".
+  PoseColumns given_pose() const {
+    PoseColumns parts;
+    for (const std::string& text : given_.pose) {
+      const auto [part, column] = pose_part(text);
+      parts.emplace(part, given_column(column));
+    }
+    return parts;
+  }
+
+  // Without the velocities and the columns of the poses.
+  Candidate given_inputs() const {
+    Candidate one{.part = Part::commands, .what = {}, .columns = {}, .why = "as given"};
+    const PoseColumns pose = given_pose();
+    for (const std::string& name : given_.inputs) {
+      const auto is_it = [&](const auto& part) { return part.second.name == name; };
+      if (std::ranges::count(StreamPlan::Pose::kVelocities, name) == 0 &&
+          std::ranges::none_of(pose, is_it)) {
+        one.columns.push_back(given_column(name));
+      }
+    }
+    return one;
+  }
+
+  // The columns beside poses that the caller names as labels of rows.
+  void take_labels() {
+    for (const std::string& label : {given_.configuration, given_.held_out}) {
+      if (!given_.pose.empty() && !label.empty() &&
+          std::ranges::find(used_, label, &CandidateColumn::name) == used_.end()) {
+        Draft::Group group{.head = "a label of rows"};
+        add_line(group, label, given_column(label));
+        draft_.commands.push_back(std::move(group));
+      }
+    }
   }
 
   // Where no velocity is known, poses tell the motion.
   void take_pose() {
-    const auto [best, rivals] = choose_pose(report_);
+    const auto [best, rivals] =
+        given_.pose.empty() ? choose_pose(report_) : PoseChoice{.parts = given_pose()};
     if (rivals.size() > 1) {
-      plan_.open.push_back(fmt::format("poses: {}: which of them?", join_text(rivals, ", or ")));
+      draft_.open.push_back(fmt::format("poses: {}: which of them?", join_text(rivals, ", or ")));
       asked_.insert(Part::velocity);
       return;
     }
-    DraftPlan::Group group;
-    std::vector<std::string> texts;
     for (const auto& [part, column] : best) {
-      add_line(group, part, column);
-      texts.push_back(fmt::format("{} = \"{}\"", part, column.name));
+      add_line(draft_.pose, part, column);
       moving_rate_hz_ = std::min(moving_rate_hz_, column.rate_hz);
     }
     const bool has_yaw = best.contains("yaw") || best.contains("qw");
@@ -672,84 +739,109 @@ class Planner {
          {std::pair("u", best.contains("x")), std::pair("v", best.contains("x")),
           std::pair("w", best.contains("z")), std::pair("r", has_yaw)}) {
       if (is_there) {
-        plan_.inputs.emplace_back(axis);
-        plan_.targets.push_back(std::string(axis) + "dot");
+        roles_.inputs.emplace_back(axis);
+        roles_.targets.push_back(std::string(axis) + "dot");
       }
     }
     for (const char* const tilt : {"roll", "pitch"}) {
       if (best.contains(tilt) && best.at(tilt).varies()) {
-        plan_.inputs.emplace_back(tilt);
+        roles_.inputs.emplace_back(tilt);
       }
     }
     if (!best.empty()) {
-      plan_.pose = "{" + join_text(texts, ", ") + "}";
-      plan_.taken.emplace_back("no velocities are known; poses tell the motion");
+      std::map<std::string, std::string> names;
+      std::ranges::transform(best, std::inserter(names, names.end()),
+                             [](const auto& part) { return std::pair(part.first, part.first); });
+      plan_.pose = pose_from(names);
+      draft_.taken.emplace_back("no velocities are known; poses tell the motion");
     }
   }
 
+  // Sources in the order of a file: states, commands, parts of the pose.
+  void put_sources() {
+    std::vector<StreamPlan::Source> sources;
+    const auto put = [&](const Draft::Group& group, Interpolation between) {
+      for (const Draft::Line& line : group.lines) {
+        if (group.is_taken) {
+          sources.push_back(plan_.sources[plan_.source(line.name)]);
+          sources.back().between = between;
+        }
+      }
+    };
+    for (const Draft::Group& group : draft_.states) {
+      put(group, Interpolation::line);
+    }
+    for (const Draft::Group& group : draft_.commands) {
+      put(group, Interpolation::hold);
+    }
+    put(draft_.pose, Interpolation::line);
+    plan_.sources = std::move(sources);
+  }
+
   void require_motion() {
-    if (!plan_.pose.empty()) {
+    if (!draft_.pose.lines.empty()) {
       return;
     }
     if (moving_.empty() && !is_asked(Part::velocity) && !is_asked(Part::rates)) {
-      plan_.open.push_back(none_known(Part::velocity, "states"));
+      draft_.open.push_back(none_known(Part::velocity, "states"));
     }
     for (const std::string& name : moving_) {
-      plan_.inputs.push_back(name);
-      plan_.targets.push_back(name + "dot");
-      plan_.derived.push_back({name + "dot", name, {}});
+      roles_.inputs.push_back(name);
+      roles_.targets.push_back(name + "dot");
+      plan_.derived.push_back({name + "dot", name});
     }
     if (!moving_.empty()) {
-      plan_.inputs.insert(plan_.inputs.end(), angles_.begin(), angles_.end());
+      roles_.inputs.insert(roles_.inputs.end(), angles_.begin(), angles_.end());
     }
     if (!moving_.empty() && !std::ranges::any_of(moving_, [](const auto& name) {
           return name == "u" || name == "v" || name == "w";
         })) {
-      plan_.remarks.emplace_back("no velocities over ground: only turning can be learned");
+      draft_.remarks.emplace_back("no velocities over ground: only turning can be learned");
     }
-    for (const DraftPlan::Line& unit : std::vector(plan_.units)) {
-      if (std::ranges::find(moving_, unit.name) != moving_.end()) {
-        plan_.units.push_back({unit.name + "dot", rate_of_change(unit.from), {}});
+    for (const std::string& name : moving_) {
+      if (const auto unit = roles_.units.find(name); unit != roles_.units.end()) {
+        roles_.units[name + "dot"] = rate_of_change(unit->second);
       }
     }
   }
 
   void take_commands(const Candidate& one) {
-    if (plan_.inputs.size() + one.columns.size() > kMostInputs) {
-      plan_.open.push_back(
+    if (roles_.inputs.size() + one.columns.size() > kMostInputs) {
+      draft_.open.push_back(
           fmt::format("commands: {}: {} are more than a model takes; which of them?", one.what,
                       one.columns.size()));
       return;
     }
     const std::vector<std::string> names = command_names(one);
-    DraftPlan::Group group{.head = one.what.size() > 200 ? one.why : one.what + ": " + one.why,
-                           .lines = {}};
+    Draft::Group group{.head = one.what.size() > 200 ? one.why : one.what + ": " + one.why,
+                       .lines = {}};
     std::vector<std::string> still;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      if (!one.columns[k].varies()) {
+      if (!one.columns[k].varies() && !one.what.empty()) {
         still.push_back(one.columns[k].name);
         continue;
       }
       add_line(group, names[k], one.columns[k]);
-      plan_.inputs.push_back(names[k]);
+      roles_.inputs.push_back(names[k]);
       const MotorActuator* const motor = motor_at(one.columns[k]);
       if (motor != nullptr && motor->direction < 0.0) {
-        plan_.scales.push_back({names[k], fmt::format("{{by = -1, about = {:g}}}", kNeutralPulseUs),
-                                fmt::format("MOT_{}_DIRECTION is -1", motor->motor)});
+        plan_.sources.back().scale = -1.0;
+        plan_.sources.back().about = kNeutralPulseUs;
+        draft_.whys["scale." + names[k]] = fmt::format("MOT_{}_DIRECTION is -1", motor->motor);
       }
       if (motor != nullptr || are_pulses(one.columns[k])) {
-        plan_.taken.back() += fmt::format(", pulses that rest at {:g} µs", kNeutralPulseUs);
-        plan_.neutrals.push_back({names[k], fmt::format("{:g}", kNeutralPulseUs),
-                                  fmt::format("{:g} to {:g}: pulses of a servo in µs",
-                                              one.columns[k].low, one.columns[k].high)});
+        draft_.taken.back() += fmt::format(", pulses that rest at {:g} µs", kNeutralPulseUs);
+        roles_.actuators[names[k]].neutral = kNeutralPulseUs;
+        draft_.whys["actuators." + names[k]] = fmt::format("{:g} to {:g}: pulses of a servo in µs",
+                                                           one.columns[k].low, one.columns[k].high);
       }
       command_rate_hz_ = std::min(command_rate_hz_, one.columns[k].rate_hz);
     }
     if (!still.empty()) {
-      plan_.remarks.push_back("constant, not taken: " + join_text(still, ", "));
+      draft_.remarks.push_back("constant, not taken: " + join_text(still, ", "));
     }
     tell_motors_at_rest(one);
-    plan_.commands.insert(plan_.commands.begin(), std::move(group));
+    draft_.commands.insert(draft_.commands.begin(), std::move(group));
   }
 
   void tell_motors_at_rest(const Candidate& one) {
@@ -763,7 +855,7 @@ class Planner {
     }
     if (low >= kNeutralPulseUs - kTuning.dead_band_us &&
         high <= kNeutralPulseUs + kTuning.dead_band_us) {
-      plan_.remarks.push_back(fmt::format(
+      draft_.remarks.push_back(fmt::format(
           "commands stay within {:g} to {:g} µs, where usual motor controllers stand still ({:g} "
           "to {:g} µs): nothing moves the vehicle",
           low, high, kNeutralPulseUs - kTuning.dead_band_us,
@@ -772,11 +864,14 @@ class Planner {
   }
 
   const bag::BagReport& report_;
-  RowClock clock_;
+  const RowClock& clock_;
+  const Roles& given_;
   std::vector<Candidate> all_;
   std::vector<MotorActuator> motors_;
   bool is_submarine_;  // roll and pitch are learned, too
-  DraftPlan plan_;
+  Draft draft_;
+  Roles& roles_ = draft_.config.roles;
+  SamplingPlan& plan_ = draft_.config.plan;
   std::map<Part, std::string> still_;  // what is constant
   std::set<Part> asked_;               // which of two isn't told
   std::vector<CandidateColumn> used_;  // states and commands that are taken
@@ -789,9 +884,9 @@ class Planner {
 
 }  // namespace
 
-DraftPlan plan_draft(const bag::BagReport& report, RowClock clock,
-                     const std::set<std::string>& of_world) {
-  return Planner(report, std::move(clock), of_world).run();
+Draft plan_draft(const bag::BagReport& report, const RowClock& clock,
+                 const std::set<std::string>& of_world, const Roles& given) {
+  return Planner(report, clock, of_world, given).run();
 }
 
 }  // namespace kelpie::log

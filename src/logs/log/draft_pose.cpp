@@ -43,6 +43,12 @@ PoseColumns pose_of(const bag::TopicReport& topic) {
 
 }  // namespace
 
+std::pair<std::string, std::string> pose_part(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  return {pose_part_by_name(text.substr(0, sign)).value_or(""),
+          sign == std::string::npos ? text : text.substr(sign + 1)};
+}
+
 PoseChoice choose_pose(const bag::BagReport& report) {
   PoseChoice choice;
   for (const bag::TopicReport& topic : report.topics) {

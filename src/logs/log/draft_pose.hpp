@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "log/candidates.hpp"
@@ -17,6 +18,10 @@ struct PoseChoice {
   PoseColumns parts{};
   std::vector<std::string> rivals{};
 };
+
+/// Part and column of a text of Roles::pose: "x" names the column x, "yaw=psi" the column psi. The
+/// part is "" where the text names none.
+std::pair<std::string, std::string> pose_part(const std::string& text);
 
 /// Finds a pose by names of fields. A pose has x and y together, with a yaw or a quaternion, and
 /// moves. Wishes, velocities and references are passed over. Allocates.

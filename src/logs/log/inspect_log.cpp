@@ -9,7 +9,6 @@
 #include "log/candidates.hpp"
 #include "log/dataset.hpp"
 #include "log/draft.hpp"
-#include "log/draft_plan.hpp"
 #include "log/validity.hpp"
 
 namespace kelpie::log {

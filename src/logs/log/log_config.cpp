@@ -18,7 +18,6 @@
 #include "file/toml.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/known_roles.hpp"
-#include "log/pose_config.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -230,23 +229,10 @@ class LogConfigReader {
   }
 
   StreamPlan::Pose pose_of(const file::TomlNode& value, const PoseParts& parts) {
-    const auto name_of = [&](const std::string& part) {
-      const auto found = parts.names.find(part);
-      return found == parts.names.end() ? std::string() : found->second;
-    };
-    StreamPlan::Pose pose{.position = {name_of("x"), name_of("y"), name_of("z")}};
-    const std::vector<std::string> angles{name_of("roll"), name_of("pitch"), name_of("yaw")};
-    const std::vector<std::string> quaternion{name_of("qw"), name_of("qx"), name_of("qy"),
-                                              name_of("qz")};
-    const auto is_named = [](const std::string& name) { return !name.empty(); };
-    const bool has_angles = std::ranges::any_of(angles, is_named);
-    const bool has_quaternion = std::ranges::any_of(quaternion, is_named);
-    if (has_angles && has_quaternion) {
-      value.refuse("has angles and a quaternion; one of them is the attitude");
-    }
-    pose.attitude = has_quaternion ? quaternion : has_angles ? angles : pose.attitude;
+    StreamPlan::Pose pose = file::located(value, [&] { return pose_from(parts.names); });
     for (const SamplingPlan::Source& source : plan().sources) {
-      if (parts.is_in_degrees && std::ranges::count(angles, source.name) > 0) {
+      if (parts.is_in_degrees && pose.attitude.size() == 3 &&
+          std::ranges::count(pose.attitude, source.name) > 0) {
         const auto& [name, unit] = *roles().units.try_emplace(source.name, "deg").first;
         if (si_unit(config_.source, name, unit).second != kRadPerDegree) {
           value["angles"].refuse("says \"deg\", but 'units' says " + name + " = \"" + unit + "\"");
@@ -406,6 +392,36 @@ void read_validity(const file::TomlNode& table, std::map<std::string, double>& v
        table.members("a table of fields, as in {\"/dvl:velocity_valid\" = 1}")) {
     file::located(value, [&] { bag::parse_column(value.key()); });
     valid[value.key()] = value.number("the least value of a valid message, a number");
+  }
+}
+
+StreamPlan::Pose pose_from(const std::map<std::string, std::string>& sources) {
+  const auto names_of = [&](const std::vector<const char*>& parts) {
+    std::vector<std::string> names;
+    for (const char* const part : parts) {
+      names.push_back(sources.contains(part) ? sources.at(part) : "");
+    }
+    return names;
+  };
+  const std::vector<std::string> position = names_of({"x", "y", "z"});
+  const std::vector<std::string> angles = names_of({"roll", "pitch", "yaw"});
+  const std::vector<std::string> quaternion = names_of({"qw", "qx", "qy", "qz"});
+  const auto is_any = [](const std::vector<std::string>& names) {
+    return std::ranges::any_of(names, [](const auto& name) { return !name.empty(); });
+  };
+  if (is_any(angles) && is_any(quaternion)) {
+    throw InputError("has angles and a quaternion; one of them is the attitude");
+  }
+  StreamPlan::Pose pose{.position = {position[0], position[1], position[2]}};
+  pose.attitude = is_any(quaternion) ? quaternion : is_any(angles) ? angles : pose.attitude;
+  return pose;
+}
+
+void add_pose_targets(const StreamPlan::Pose& pose, Roles& roles) {
+  if (roles.targets.empty()) {
+    roles.targets = pose.accelerations();
+    std::erase_if(roles.targets,
+                  [](const std::string& name) { return name == "pdot" || name == "qdot"; });
   }
 }
 

@@ -37,6 +37,14 @@ struct LogConfig {
 /// Throws InputError (key) on a name that is no column of a recording, and on no number.
 void read_validity(const file::TomlNode& table, std::map<std::string, double>& valid);
 
+/// The pose whose parts (x, y, z, roll, pitch, yaw, qw, qx, qy, qz) have sources of these names.
+/// Throws InputError on angles beside a quaternion.
+StreamPlan::Pose pose_from(const std::map<std::string, std::string>& sources);
+
+/// The roles of the columns of poses where the caller names none: all accelerations but pdot and
+/// qdot are targets.
+void add_pose_targets(const StreamPlan::Pose& pose, Roles& roles);
+
 /// Reads a configuration file (TOML); settings of the model are skipped. Returns defaults for an
 /// empty path, or for a file without [log]. Throws InputError (file, line, key): missing file, no
 /// TOML, a value of a wrong kind, an unknown name (with the nearest known name).

@@ -16,10 +16,8 @@
 #include "core/seconds.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
-#include "log/draft_plan.hpp"
 #include "log/held_table.hpp"
 #include "log/pose_check.hpp"
-#include "log/pose_config.hpp"
 #include "log/pose_instants.hpp"
 #include "log/signal.hpp"
 #include "log/validity.hpp"
@@ -285,13 +283,9 @@ void add_neutral_pulses(const Table& table, Roles& roles) {
 
 // Whether the samples of a draft have all these columns.
 bool gives(const Draft& draft, const std::vector<std::string>& inputs) {
-  if (!draft.is_complete()) {
-    return false;
-  }
-  const std::vector<std::string> given = draft.config("").roles.inputs;
-  return std::ranges::all_of(inputs, [&](const std::string& name) {
-    return std::ranges::find(given, name) != given.end();
-  });
+  return draft.is_complete() && std::ranges::all_of(inputs, [&](const std::string& name) {
+           return std::ranges::count(draft.config.roles.inputs, name) > 0;
+         });
 }
 
 // What the caller wants, over what was guessed.
@@ -428,36 +422,36 @@ namespace {
 // `table`: the content of a log that is no bag.
 Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig& config,
            const Roles& roles) {
+  const bool has_pose = !roles.pose.empty();
+  if (has_pose && config.makes_samples()) {
+    refuse(config.source, "--pose",
+           "stands beside a [log] that names its signals; write pose = {...} there");
+  }
+  if (has_pose && is_of_bag) {
+    refuse(source.path, "--pose",
+           "names columns of a CSV file; for a recording write pose = {...} in [log]");
+  }
   if (config.makes_samples()) {
-    if (!roles.pose.empty()) {
-      refuse(config.source, "--pose",
-             "stands beside a [log] that names its signals; write pose = {...} there");
-    }
     return sampled_log(source, is_of_bag, std::move(table), config, roles);
   }
-  if (!roles.pose.empty()) {
-    if (is_of_bag) {
-      refuse(source.path, "--pose",
-             "names columns of a CSV file; for a recording write pose = {...} in [log]");
-    }
-    const LogConfig with_pose = pose_config(table, roles);
-    return sampled_log(source, is_of_bag, std::move(table), with_pose, roles);
-  }
   std::string why_not;
-  if (!is_of_bag && can_be_taken(table, roles, why_not)) {
+  if (!is_of_bag && !has_pose && can_be_taken(table, roles, why_not)) {
     return taken_log(std::move(table), roles);
   }
   Draft draft = is_of_bag ? draft_of(source) : draft_of(table, roles);
-  if (!is_of_bag && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
+  if (!is_of_bag && !has_pose && !roles.inputs.empty() && !gives(draft, roles.inputs)) {
     return taken_log(std::move(table), roles);  // who uses it says what is missing
   }
   if (!draft.is_complete()) {
-    const bool lacks_targets = !why_not.starts_with("targets:") || !draft.has_targets;
-    refuse(source.path, {}, draft.unclear(source.path, lacks_targets ? why_not : ""));
+    const bool lacks_targets =
+        !why_not.starts_with("targets:") || draft.config.roles.targets.empty();
+    refuse(source.path, {}, draft.unclear(lacks_targets ? why_not : ""));
   }
-  const LogConfig drafted = draft.config(source.path);
-  Log log = sampled_log(source, is_of_bag, std::move(table), drafted, over(roles, drafted.roles));
-  log.draft = std::move(draft);
+  Log log = sampled_log(source, is_of_bag, std::move(table), draft.config,
+                        over(roles, draft.config.roles));
+  if (!has_pose) {  // which the caller has to name for every log
+    log.draft = std::move(draft);
+  }
   return log;
 }
 

@@ -72,7 +72,7 @@ void inspect(const InspectArguments& options) {
   say("{}", report::inspect_table(report, source.path));
   say("{}", report::draft_table(draft, look) + report::mistakes_text(mistakes));
   if (!options.draft.empty()) {
-    file::write_file_whole(options.draft, draft.toml);
+    file::write_file_whole(options.draft, draft.toml());
     say("template: {}{}\n", options.draft,
         draft.is_complete() ? "" : ", which isn't complete; it says what is open");
   }

@@ -94,8 +94,8 @@ log::Dataset open_logs(const PlanOptions& options, bool is_new, PlannedLog& plan
   roles.inputs = logs.front().input_names;
   roles.targets = logs.front().target_names;
   if (opened.draft) {
-    planned.draft = opened.draft->toml;
-    config = opened.draft->config(options.log.source.path);
+    planned.draft = opened.draft->toml();
+    config = opened.draft->config;
     roles.time = config.roles.time;
     roles.units.insert(config.roles.units.begin(), config.roles.units.end());
     roles.actuators = opened.roles.actuators;
@@ -512,7 +512,7 @@ log::Log open_log(const log::LogSource& source, const log::LogConfig& config,
   log::Log log = log::read_log(source, config, roles);
   warn("{}", log.losses);
   if (log.draft) {
-    say("{}", log.draft->summary(source.path));
+    say("{}", log.draft->summary());
   }
   if (log.disarmed > 0) {
     say("left out: {} messages while the motors were disarmed (armed_only)\n", log.disarmed);

@@ -110,7 +110,7 @@ TEST_F(Ardusub, AVelocityLogsDeltasAreTheVelocities) {
        {std::pair("dvl.tlog", "VISION_POSITION_DELTA:position_delta[1]/time_delta_usec"),
         std::pair("dvl.BIN", "VISO:PosDY/dt")}) {
     const log::Log log = read(name);
-    EXPECT_NE(log.draft->toml.find(from), std::string::npos) << log.draft->toml;
+    EXPECT_NE(log.draft->toml().find(from), std::string::npos) << log.draft->toml();
     const log::Dataset data = log.dataset();
     EXPECT_EQ(join_text(data.input_names, ","), "u,v,w,p,q,r,phi,theta,m1,m2,m3,m4,m5,m6") << name;
     const std::vector<double>& times = column(log, "t");
@@ -180,7 +180,7 @@ TEST(ArdusubParameters, DirectionsAreKnownOnceFunctionAndDirectionAre) {
 }
 
 TEST_F(Ardusub, VoltageOfAGroundStationComesWithTheTimesOfReception) {
-  std::string toml = read("drive.tlog").draft->toml;
+  std::string toml = read("drive.tlog").draft->toml();
   EXPECT_NE(toml.find("# voltage = \"SYS_STATUS:voltage_battery\""), std::string::npos) << toml;
   toml.replace(toml.find("clock = \"header\""), 16, "clock = \"receive\"");
   toml.replace(toml.find("# voltage"), 9, "voltage");

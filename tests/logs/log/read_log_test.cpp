@@ -190,7 +190,7 @@ TEST_F(ReadLog, UnitsThatTheUserGivesAreKnownToTheDraft) {
   const std::string twice = write("log.csv", both);
   const log::Roles roles{.units = {{"t", "ms"}, {"u", "knots"}}};
   const log::Log first = log::read_log({.path = twice}, {}, roles);
-  const log::Log second = log::read_log({.path = twice}, first.draft->config(twice), roles);
+  const log::Log second = log::read_log({.path = twice}, first.draft->config, roles);
   for (const log::Log* const log : {&first, &second}) {
     EXPECT_EQ(log->sampling.rate_hz, 25.0);
     const std::vector<double>& u = log->table.columns[log->table.find("u")];

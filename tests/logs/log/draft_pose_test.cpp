@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "log/pose_config.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@
 #include "log/read_log.hpp"
 #include "support.hpp"
 
-namespace kelpie::pose_config_test {
+namespace kelpie::draft_pose_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -244,4 +243,4 @@ TEST_F(PoseConfig, AHeaderWithUnitsIsAsGoodAsOneWithout) {
 }
 
 }  // namespace
-}  // namespace kelpie::pose_config_test
+}  // namespace kelpie::draft_pose_test
