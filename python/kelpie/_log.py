@@ -57,13 +57,13 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
         "/odom:twist.twist.linear.x": a row per message of the first one's topic.
     clock : "receive" or "header", whose times `columns` have.
     messages : folder of .msg files, for types that the recording doesn't define.
-    recover : read what can be read of a damaged recording; `attrs["losses"]` says what was lost.
+    recover : read what can be read of a damaged file; `attrs["losses"]` says what was lost.
     strict : refuse messages with a wrong checksum, which are passed over and counted otherwise.
     pose : instead, columns of a CSV file with poses, such as ["x", "y", "psi"] or ["z=altitude"]:
         rows of velocities, accelerations and commands, as of `kelpie learn --pose`.
     inputs : beside `pose`, the inputs (velocities of the pose, commands, ...). Default: the
         velocities and the commands that are known by name.
-    rate : beside `pose`, rows per second. Default: as poses come, at most 10.
+    rate : beside `pose`, rows per second. Default: as poses come, at most 10 (50 of a short log).
     draft : of a CSV file without the usual names or accelerations, the rows that `kelpie learn`
         guesses: inputs in SI units, and slopes of velocities as targets, at one rate. Recordings
         are read so by default.
@@ -73,7 +73,8 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     Returns the columns, numbers as float64, NaN where there is none. A column with words holds
     objects. `attrs` has `source`, `units` (of columns, where they are known), `time` (name of the
     time's column, or None), `inputs` and `targets` (as `kelpie learn` would guess them; empty where
-    it can't), `losses`, `draft` (the configuration that was guessed, or None).
+    it can't), `losses`, `doubts` (of a CSV file, velocities that contradict its poses), `draft`
+    (the configuration that was guessed, or None).
     DynamicsModel.fit() takes such a data frame as a whole.
 
     Raises ValueError naming file, place and what would be right; FileNotFoundError where there is no
@@ -110,7 +111,7 @@ def read_log(path: _Path, config: Optional[_Path] = None, *,
     log.attrs = {"source": os.fspath(path), "units": found["units"],
                  "time": found["time"] or None, "inputs": found["inputs"],
                  "targets": found["targets"], "losses": found["losses"].splitlines(),
-                 "draft": found["draft"] or None}
+                 "doubts": found["doubts"], "draft": found["draft"] or None}
     if frame is False or pandas is None:
         return log
     table = pandas.DataFrame(dict(log))

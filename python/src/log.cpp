@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include "kelpie/core/error.hpp"
 #include "log/dataset.hpp"
 #include "log/plausibility.hpp"
+#include "log/pose_check.hpp"
 #include "log/read_log.hpp"
 #include "motion/states.hpp"
 #include "rows.hpp"
@@ -54,10 +57,7 @@ std::vector<std::string> log_mistakes(const Names& inputs, const Names& targets,
   data.rate_hz = log::measured_rate(data.times_s);
   std::vector<std::string> found;
   if (data.rate_hz > 0.0) {
-    for (const log::Mistake& mistake : log::target_mistakes(data, states)) {
-      found.push_back(mistake.what);
-    }
-    for (const log::Mistake& mistake : log::clock_mistakes(data)) {
+    for (const log::Mistake& mistake : log::all_mistakes(data, states)) {
       found.push_back(mistake.what);
     }
   }
@@ -105,6 +105,9 @@ py::dict dict_of(const log::Log& log) {
   found["words"] = words;
   found["units"] = units_of(log);
   found["losses"] = log.losses;
+  Names doubts;
+  std::ranges::transform(log.doubts, std::back_inserter(doubts), log::mistake_text);
+  found["doubts"] = doubts;
   found["draft"] = log.draft ? log.draft->toml() : "";
   add_roles(log, found);
   return found;
@@ -126,7 +129,9 @@ py::dict read_log(const std::string& file, const std::string& config, const Name
     } else if (!roles.pose.empty()) {
       log = log::read_log(source, {}, roles);
     } else if (config.empty() && !bag::is_bag(file)) {
-      log.table = log::read_csv(file);  // all of it, whether it can be learned or not
+      // All of it, whether it can be learned or not.
+      log.table = log::read_table(source, {}, log.losses);
+      log.doubts = log::check_pose(log.table, {}).mistakes;
     } else {
       const log::LogConfig how = log::read_log_config(config);
       log = log::read_log(source, how, how.roles);

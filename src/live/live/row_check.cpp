@@ -10,35 +10,24 @@
 
 namespace kelpie::live {
 
-namespace {
-
-bool derives_all_targets(const StreamPlan& plan) {
-  const std::vector<std::string> of_pose =
-      plan.pose ? plan.pose->accelerations() : std::vector<std::string>{};
-  return std::ranges::all_of(plan.targets, [&](const std::string& target) {
-    return std::ranges::count(of_pose, target) > 0 ||
-           std::ranges::count(plan.derived, target, &StreamPlan::Derived::name) > 0;
-  });
-}
-
-}  // namespace
-
 RowCheck::RowCheck(const StreamPlan& plan, std::string states)
     : states_(std::move(states)),
-      is_idle_(derives_all_targets(plan)),
       thinning_(static_cast<std::size_t>(
           std::max(1.0, std::ceil(plan.rate_hz / kTuning.checked_rate_hz)))) {
   rows_.input_names = plan.inputs;
   rows_.target_names = plan.targets;
   std::ranges::transform(plan.derived, std::back_inserter(rows_.derived),
                          &StreamPlan::Derived::name);
+  if (plan.pose) {
+    std::ranges::copy(plan.pose->accelerations(), std::back_inserter(rows_.derived));
+  }
   rows_.rate_hz = plan.rate_hz / static_cast<double>(thinning_);
   due_ = std::max(static_cast<std::size_t>(kTuning.checked_s * rows_.rate_hz),
                   kTuning.least_checked_rows);
 }
 
 std::vector<log::Mistake> RowCheck::take(const Row& row) {
-  if (is_idle_ || passed_++ % thinning_ != 0) {
+  if (passed_++ % thinning_ != 0) {
     return {};
   }
   rows_.inputs.insert(rows_.inputs.end(), row.x.begin(), row.x.end());
@@ -49,7 +38,8 @@ std::vector<log::Mistake> RowCheck::take(const Row& row) {
 }
 
 std::vector<log::Mistake> RowCheck::finish() {
-  std::vector<log::Mistake> found = log::target_mistakes(rows_, states_);
+  std::vector<log::Mistake> found = log::all_mistakes(rows_, states_);
+  std::erase_if(found, [](const log::Mistake& one) { return !one.is_refused; });
   rows_.inputs.clear();
   rows_.targets.clear();
   rows_.times_s.clear();

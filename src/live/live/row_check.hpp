@@ -12,16 +12,15 @@
 
 namespace kelpie::live {
 
-/// Checks the rows of a live run by the rules for logs (log::target_mistakes), two minutes of rows
-/// at a time, thinned to at most 50 Hz. A plan whose targets are all derived from velocities or
-/// poses has nothing to check. For one thread. Memory: the rows of two minutes.
+/// Checks the rows of a live run by the rules for logs (log::all_mistakes), two minutes of rows at
+/// a time, thinned to at most 50 Hz. For one thread. Memory: the rows of two minutes.
 class RowCheck {
  public:
   /// `states`: the setting of this name.
   RowCheck(const StreamPlan& plan, std::string states);
 
-  /// Takes a row. Returns the mistakes of the last two minutes where these are complete, else none.
-  /// Cost O(1), with a check O(rows). Allocates.
+  /// Takes a row. Returns the certain mistakes of the last two minutes where these are complete,
+  /// else none. Cost O(1), with a check O(rows). Allocates.
   std::vector<log::Mistake> take(const Row& row);
 
   /// The mistakes of the rows since the last check, where these are enough for a check.
@@ -29,7 +28,6 @@ class RowCheck {
 
  private:
   std::string states_;
-  bool is_idle_;          // nothing to check
   std::size_t thinning_;  // of so many rows, one is taken
   std::size_t due_;       // rows of a check
   std::size_t passed_ = 0;

@@ -33,6 +33,7 @@ struct FieldRange {
   /// σ of white noise, in the field's unit (Statistics::noise); for arrays the largest of the
   /// elements
   std::optional<double> noise{};
+  double rate_hz = 0.0;  ///< of finite values by their median step; 0: as the topic's messages
   std::vector<Element> elements{};  ///< the first kMostElements; empty for a single number
 };
 

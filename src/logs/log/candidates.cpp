@@ -17,23 +17,9 @@ namespace {
 
 constexpr std::size_t kShownNames = 16;
 
-bool is_number(std::string_view text) {
-  return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-}
-
-// "rpm#" and "rpm12"; gives what follows the word.
-std::optional<std::string> rest_of(std::string_view pattern, const std::string& word) {
-  if (!pattern.ends_with('#')) {
-    return word == pattern ? std::optional<std::string>("") : std::nullopt;
-  }
-  pattern.remove_suffix(1);
-  const bool fits = word.starts_with(pattern) && is_number(word.substr(pattern.size()));
-  return fits ? std::optional(word.substr(pattern.size())) : std::nullopt;
-}
-
 // A name taken apart.
 struct NamedCommand {
-  KnownWord::Kind kind = KnownWord::Kind::thrust;
+  CommandWords::Kind kind = CommandWords::Kind::thrust;
   int rank = 0;
   std::string_view why;
   std::string stem;  // the words that make it a command's
@@ -56,37 +42,36 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
   }
   NamedCommand command;
   bool is_one = false;
-  const auto meet = [&](const KnownWord& known) {
+  const auto meet = [&](const CommandWords& known) {
     command.kind = command.rank == 0 ? known.kind : std::max(command.kind, known.kind);
     command.rank = std::max(command.rank, known.rank);
     command.why = known.why;
     is_one = true;
   };
   for (const std::string& word : words) {
-    bool is_known = false;
-    for (const KnownWord& known : known_command_words()) {
-      if (const std::optional<std::string> rest = rest_of(known.word, word); rest && !is_known) {
-        meet(known);
-        add_word(command.stem, word.substr(0, word.size() - rest->size()));
-        add_word(command.tail, *rest);
-        is_known = true;
-      }
-    }
-    if (!is_known) {
+    const auto known = std::ranges::find_if(known_command_words(), [&](const CommandWords& one) {
+      return is_among_words(one.words, word);
+    });
+    if (known != known_command_words().end()) {
+      const std::size_t letters = word.find_last_not_of("0123456789") + 1;
+      meet(*known);
+      add_word(command.stem, word.substr(0, letters));
+      add_word(command.tail, word.substr(letters));
+    } else {
       const bool is_field =
           std::ranges::find(known_command_fields(), word) != known_command_fields().end();
       add_word(is_field ? command.stem : command.tail, word);
     }
   }
-  for (const KnownWord& known : known_command_words()) {
-    if (known.word.find('_') != std::string_view::npos && known.word == whole) {
+  for (const CommandWords& known : known_command_words()) {
+    if (words.size() > 1 && is_among_words(known.words, whole)) {
       meet(known);
       command.tail = whole;
     }
   }
   if (words.size() > 1 && words.front() == "c" && !pose_part_by_name(column.name)) {
-    meet({.word = "c",
-          .kind = KnownWord::Kind::thrust,
+    meet({.words = "c",
+          .kind = CommandWords::Kind::thrust,
           .rank = 1,
           .why = "c_ of a glider: commanded"});
   }
@@ -96,7 +81,7 @@ std::optional<NamedCommand> command_by_name(const CandidateColumn& column) {
 struct CommandGroup {
   std::vector<CandidateColumn> columns;
   std::set<std::string> tails;
-  KnownWord::Kind kind = KnownWord::Kind::thrust;
+  CommandWords::Kind kind = CommandWords::Kind::thrust;
   int rank = 0;
   std::string why;
 };
@@ -146,7 +131,7 @@ std::vector<std::string> command_paths(const bag::TopicReport& topic) {
 // Columns that are commands by name. Names of one kind that differ only in the word of the kind
 // (pwm1, pwm2 and rpm1, rpm2) are two readings, hence two candidates; all others form one.
 std::vector<Candidate> named_commands(const std::vector<CandidateColumn>& columns) {
-  std::map<std::pair<KnownWord::Kind, std::string>, CommandGroup> groups;
+  std::map<std::pair<CommandWords::Kind, std::string>, CommandGroup> groups;
   for (const CandidateColumn& column : columns) {
     if (velocity_by_name(column.name)) {
       continue;
@@ -405,7 +390,58 @@ class Finder {
   bool has_autopilot_ = false;
 };
 
+// The parts of a pose that one topic, or a table, has by name.
+PoseColumns pose_of(const bag::TopicReport& topic) {
+  PoseColumns parts;
+  const auto is_plain = [](const std::string& name) {
+    return can_be_written(name) && name.find_first_of("\"\\") == std::string::npos;
+  };
+  for (const bag::FieldRange& field : topic.fields) {
+    const bool is_one =
+        field.finite > 0 && field.elements.empty() && is_plain(field.path) && is_plain(topic.name);
+    const auto part = is_one ? measured_pose_part(field.path) : std::nullopt;
+    if (part) {
+      parts.try_emplace(*part, column_of(topic, field));
+    }
+  }
+  const bool is_quaternion =
+      parts.contains("qw") && parts.contains("qx") && parts.contains("qy") && parts.contains("qz");
+  std::erase_if(parts, [&](const auto& part) {
+    const bool is_angle = part.first.size() > 1 && part.first[0] != 'q';
+    return is_quaternion ? is_angle : part.first[0] == 'q';
+  });
+  const bool has_plane =
+      parts.contains("x") && parts.contains("y") && (is_quaternion || parts.contains("yaw"));
+  if (!has_plane) {
+    parts.erase("x");
+    parts.erase("y");
+  }
+  const bool moves = std::ranges::any_of(parts, [](const auto& part) {
+    return part.second.varies() && part.first != "roll" && part.first != "pitch";
+  });
+  return moves ? parts : PoseColumns{};
+}
+
 }  // namespace
+
+std::pair<std::string, std::string> pose_part(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  return {pose_part_by_name(text.substr(0, sign)).value_or(""),
+          sign == std::string::npos ? text : text.substr(sign + 1)};
+}
+
+PoseChoice choose_pose(const bag::BagReport& report) {
+  PoseChoice choice;
+  for (const bag::TopicReport& topic : report.topics) {
+    PoseColumns parts = pose_of(topic);
+    if (parts.size() > choice.parts.size()) {
+      choice = {std::move(parts), {topic.name}};
+    } else if (!parts.empty() && parts.size() == choice.parts.size()) {
+      choice.rivals.push_back(topic.name);
+    }
+  }
+  return choice;
+}
 
 std::string short_type(std::string type) {
   const std::size_t msg = type.find("/msg/");
@@ -438,8 +474,11 @@ bool can_be_written(std::string_view name) {
 }
 
 CandidateColumn column_of(const bag::TopicReport& topic, const bag::FieldRange& field) {
-  return seen_column(topic, field.path, field.unit,
-                     {.low = field.low, .high = field.high, .finite = field.finite});
+  CandidateColumn column =
+      seen_column(topic, field.path, field.unit,
+                  {.low = field.low, .high = field.high, .finite = field.finite});
+  column.rate_hz = field.rate_hz > 0.0 ? field.rate_hz : column.rate_hz;
+  return column;
 }
 
 std::vector<Candidate> find_candidates(const bag::BagReport& report) {

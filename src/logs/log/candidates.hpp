@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bag/inspect.hpp"
@@ -43,6 +45,23 @@ CandidateColumn column_of(const bag::TopicReport& topic, const bag::FieldRange& 
 /// instances of a message ("XKF1[0]", "XKF1[1]") only the first. Names with control characters or
 /// broken UTF-8 are skipped, because a configuration cannot hold such names.
 std::vector<Candidate> find_candidates(const bag::BagReport& report);
+
+/// Columns of a pose by part: x, y, z, roll, pitch, yaw or qw, qx, qy, qz.
+using PoseColumns = std::map<std::string, CandidateColumn>;
+
+/// The pose of a recording with the most parts, and the topics with as many.
+struct PoseChoice {
+  PoseColumns parts{};
+  std::vector<std::string> rivals{};
+};
+
+/// Part and column of a text of Roles::pose: "x" names the column x, "yaw=psi" the column psi. The
+/// part is "" where the text names none.
+std::pair<std::string, std::string> pose_part(const std::string& text);
+
+/// Finds a pose by names of fields. A pose has x and y together, with a yaw or a quaternion, and
+/// moves. Wishes, velocities and references are passed over. Allocates.
+PoseChoice choose_pose(const bag::BagReport& report);
 
 /// Whether a name is UTF-8 without control characters.
 bool can_be_written(std::string_view name);

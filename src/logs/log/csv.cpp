@@ -26,6 +26,7 @@
 #include "file/unpacked.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/csv_time.hpp"
+#include "log/known_roles.hpp"
 #include "log/tuning.hpp"
 
 namespace kelpie::log {
@@ -42,7 +43,8 @@ constexpr std::size_t kShownLetters = 40;
 // The lines of a text, each without its end (LF, CRLF or CR), numbered from 1.
 class Lines {
  public:
-  Lines(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
+  Lines(std::string_view text, const std::string& source)
+      : rest_(text), source_(source), is_cut_(!text.ends_with('\n') && !text.ends_with('\r')) {}
 
   bool next(std::string_view& line) {
     if (rest_.empty()) {
@@ -62,10 +64,13 @@ class Lines {
   }
 
   std::size_t number() const { return number_; }
+  // Whether the last line has no end.
+  bool is_cut() const { return rest_.empty() && is_cut_; }
 
  private:
   std::string_view rest_;
   const std::string& source_;
+  bool is_cut_;
   std::size_t number_ = 0;
 };
 
@@ -280,6 +285,9 @@ void name_columns(Table& table, std::span<const std::string_view> cells, std::si
     if (short_names.count(known.name) > 1) {
       known = {whole, ""};
     }
+    if (known.unit.empty()) {
+      known.unit = unit_in_name(known.name);
+    }
     table.names.push_back(std::move(known.name));
     table.units.push_back(std::move(known.unit));
   }
@@ -318,6 +326,7 @@ void finish_columns(Table& table, std::size_t header_line) {
   }
 }
 
+constexpr const char* kRecover = "; --recover reads what stands before";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 void check_is_text(std::string_view content, const std::string& source) {
@@ -338,6 +347,11 @@ void check_is_text(std::string_view content, const std::string& source) {
     }
   }
   if (const std::size_t nul = content.find('\0'); nul != std::string_view::npos) {
+    if (content.find_first_not_of('\0', nul) == std::string_view::npos) {
+      refuse_csv(source, 0,
+                 fmt::format("ends in {} NUL bytes, as after a loss of power{}",
+                             content.size() - nul, kRecover));
+    }
     const auto line = 1 + std::ranges::count(content.substr(0, nul), '\n');
     refuse_csv(source, static_cast<std::size_t>(line),
                "holds a NUL byte: binary or UTF-16? Save it as text in UTF-8");
@@ -347,11 +361,14 @@ void check_is_text(std::string_view content, const std::string& source) {
 // Puts a table together, line by line.
 class TableBuilder {
  public:
-  explicit TableBuilder(const std::string& source) : cutter_(source, ',') {
+  TableBuilder(const std::string& source, std::string* losses)
+      : losses_(losses), cutter_(source, ',') {
     table_.source = source;
   }
 
-  void add(std::string_view line, std::size_t number) {
+  // `is_last`: nothing ends the line.
+  void add(std::string_view line, std::size_t number, bool is_last) {
+    is_last_ = is_last;
     const std::string_view content = trimmed(line);
     const bool is_comment =
         content.starts_with('#') || content.starts_with("% ") || content.starts_with("%%");
@@ -458,7 +475,13 @@ class TableBuilder {
         cutter_ = CellCutter(table_.source, ',');
       }
     }
-    name_columns(table_, cutter_.cut(header_.text, header_.number), header_.number);
+    std::span<const std::string_view> names = cutter_.cut(header_.text, header_.number);
+    const bool ends_alike = !row.empty() && trimmed(row).back() == cutter_.separator();
+    if (names.size() > 2 && names.back().empty() && ends_alike &&
+        leaves_out(header_.number, "ends in an empty column")) {
+      names = names.first(names.size() - 1);
+    }
+    name_columns(table_, names, header_.number);
   }
 
   // What is wrong with a row of another number of cells than the header, as far as it shows.
@@ -473,17 +496,30 @@ class TableBuilder {
         static_cast<std::size_t>(std::ranges::count(line, other)) + 1 == names) {
       return fmt::format(": they are separated by '{}', those of the header by '{}'", other, own);
     }
+    if (is_last_ && cells.size() < names) {
+      return std::string(": the file ends within this line") + kRecover;
+    }
     return own == ',' && 2 * cells.size() > 3 * names && std::ranges::all_of(cells, are_digits)
                ? ": decimal commas? Separate cells by ';', or write decimals with a point"
                : "";
   }
 
   void add_row(std::span<const std::string_view> cells, std::string_view text, std::size_t line) {
+    const std::size_t names = table_.names.size();
+    if (text == header_.text && leaves_out(line, "is the header again")) {
+      return;
+    }
     if (text == header_.text) {
       refuse_csv(table_.source, line,
                  "is the header again: two logs in one file? Give them one by one");
     }
-    if (cells.size() != table_.names.size()) {
+    if (losses_ != nullptr && cells.size() == names + 1 && cells.back().empty()) {
+      cells = cells.first(names);
+    }
+    if (is_last_ && cells.size() < names && leaves_out(line, "is cut off")) {
+      return;
+    }
+    if (cells.size() != names) {
       const std::size_t count = cells.size();
       refuse_csv(table_.source, line,
                  fmt::format("{} cells in this row; the header has {}{}", count,
@@ -537,6 +573,14 @@ class TableBuilder {
     return true;
   }
 
+  // Notes the line as lost where losses are allowed.
+  bool leaves_out(std::size_t line, const char* why) {
+    if (losses_ != nullptr) {
+      *losses_ += fmt::format("{}:{}: {}; left out\n", table_.source, line, why);
+    }
+    return losses_ != nullptr;
+  }
+
   void note_mark(std::size_t& own_line, std::string_view cell, std::size_t column,
                  std::size_t line) {
     own_line = line;
@@ -550,6 +594,8 @@ class TableBuilder {
   }
 
   Table table_;
+  std::string* losses_;
+  bool is_last_ = false;
   CellCutter cutter_;
   bool has_separator_ = false;
   bool has_units_row_ = false;
@@ -573,22 +619,27 @@ std::string quoted_if_needed(std::string_view text) {
 
 }  // namespace
 
-Table read_csv(const std::filesystem::path& file) {
-  return parse_csv(file::read_content(file, "a CSV file", file::kTuning.table_bytes),
-                   file.string());
+Table read_csv(const std::filesystem::path& file, std::string* losses) {
+  return parse_csv(file::read_content(file, "a CSV file", file::kTuning.table_bytes), file.string(),
+                   losses);
 }
 
-Table parse_csv(std::string content, const std::string& source) {
+Table parse_csv(std::string content, const std::string& source, std::string* losses) {
   content = file::unpacked(std::move(content), source);
+  if (const std::size_t end = content.find_last_not_of('\0') + 1;
+      losses != nullptr && end < content.size()) {
+    *losses += fmt::format("{}: {} NUL bytes at the end; left out\n", source, content.size() - end);
+    content.resize(end);
+  }
   check_is_text(content, source);
   std::string_view text = content;
   if (text.starts_with(kByteOrderMark)) {
     text.remove_prefix(kByteOrderMark.size());
   }
-  TableBuilder builder(source);
+  TableBuilder builder(source, losses);
   Lines lines(text, source);
   for (std::string_view line; lines.next(line);) {
-    builder.add(line, lines.number());
+    builder.add(line, lines.number(), lines.is_cut());
   }
   return builder.finished();
 }

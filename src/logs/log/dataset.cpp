@@ -279,8 +279,9 @@ bool may_be_pulses(const Table& table, std::size_t column) {
   return is_command && !is_speed && (unit.empty() || unit == "us" || unit == "µs");
 }
 
-// The number of zeros in a column of pulses to both sides of rest; 0 for any other column.
-std::size_t missing_pulses(const std::vector<double>& values) {
+}  // namespace
+
+std::optional<std::size_t> zeros_among_pulses(std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   std::size_t zeros = 0;
@@ -289,23 +290,21 @@ std::size_t missing_pulses(const std::vector<double>& values) {
       ++zeros;
     } else if (std::isfinite(value)) {
       if (value != std::floor(value)) {
-        return 0;
+        return std::nullopt;
       }
       low = std::min(low, value);
       high = std::max(high, value);
     }
   }
-  return are_pulses_about_rest(low, high) ? zeros : 0;
+  return are_pulses_about_rest(low, high) ? std::optional(zeros) : std::nullopt;
 }
-
-}  // namespace
 
 std::string set_missing_pulses(Table& table) {
   std::vector<std::string> names;
   std::size_t rows = 0;
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
     const std::size_t missing =
-        may_be_pulses(table, column) ? missing_pulses(table.columns[column]) : 0;
+        may_be_pulses(table, column) ? zeros_among_pulses(table.columns[column]).value_or(0) : 0;
     if (missing > 0) {
       std::ranges::replace(table.columns[column], 0.0, kNeutralPulseUs);
       names.push_back(table.names[column]);

@@ -71,11 +71,13 @@ std::string columns_text(const Table& table);
 /// names, a header of numbers only, a row with a wrong number of cells, a broken quotation, no
 /// rows, mixed decimal commas and points, a line, columns or words beyond the bounds of
 /// reference/limits.md, as file::read_content() and file::unpacked() do. Throws Failure when the
-/// disk fails while reading.
-Table read_csv(const std::filesystem::path& file);
+/// disk fails while reading. With `losses` a header within the rows, an empty last column, a last
+/// line that is cut off and NUL bytes at the end (as after a loss of power) are left out, and told
+/// there, a line each.
+Table read_csv(const std::filesystem::path& file, std::string* losses = nullptr);
 
 /// The same of the content of a file; messages call the content `source`.
-Table parse_csv(std::string content, const std::string& source);
+Table parse_csv(std::string content, const std::string& source, std::string* losses = nullptr);
 
 /// Header and rows, separated by commas; numbers in the shortest exact form, words as read, NaN and
 /// empty cells as "nan". Requires names that are different, not empty, without line ends.
@@ -180,6 +182,10 @@ std::map<std::string, Unit> column_units(const Table& table, const Roles& roles)
 /// (`t = "ms"`) is kept for Table::seconds_per_unit(). Throws InputError on a missing column and as
 /// si_unit() does.
 void convert_units(Table& table, const std::map<std::string, std::string>& units);
+
+/// How many zeros are among the pulses of a servo, in whole µs to both sides of rest; empty: other
+/// values.
+std::optional<std::size_t> zeros_among_pulses(std::span<const double> values);
 
 /// Sets pulses of 0 to the pulse at rest (kNeutralPulseUs), in columns of commands whose other
 /// values are pulses of servos in whole µs to both sides of rest: a disarmed autopilot sends none.

@@ -10,8 +10,8 @@
 
 #include "core/text.hpp"
 #include "kelpie/core/error.hpp"
+#include "log/candidates.hpp"
 #include "log/dataset.hpp"
-#include "log/draft_pose.hpp"
 #include "log/pose_check.hpp"
 
 namespace kelpie::log {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -68,7 +67,7 @@ bag::BagReport inspect_table(const Table& table, const RowClock& clock);
 /// A CSV file, with what is known of its numbers before any role: pulses of disarmed motors
 /// (set_missing_pulses()), the unit of the time (settle_time_unit()). Columns in `given.units` have
 /// no unit but the time, since whoever reads the table converts them. `told`: lines for the user.
-Table read_table(const std::filesystem::path& file, const Roles& given, std::string& told);
+Table read_table(const LogSource& source, const Roles& given, std::string& told);
 
 /// Drafts a configuration for the log. Never throws because of the log's content: unclear points
 /// become `open`.

@@ -19,7 +19,6 @@
 #include "kelpie/core/scaling.hpp"
 #include "kelpie/motion/unit.hpp"
 #include "log/ardusub.hpp"
-#include "log/draft_pose.hpp"
 #include "log/tuning.hpp"
 #include "motion/signal_names.hpp"
 #include "stream/tuning.hpp"
@@ -606,11 +605,19 @@ class Planner {
 
   // What the velocity's message says of itself, where that is not always good.
   void take_validity(const std::string& name) {
+    if (name.empty()) {  // drop_missing() knows the columns of a table
+      return;
+    }
     const auto topic = std::ranges::find(report_.topics, name, &bag::TopicReport::name);
-    const auto known = validity_of_message(short_type(topic->type));
-    const auto field = !known
-                           ? topic->fields.end()
-                           : std::ranges::find(topic->fields, known->first, &bag::FieldRange::path);
+    auto known = validity_of_message(short_type(topic->type));
+    for (const bag::FieldRange& field : topic->fields) {
+      if (!known && validity_by_name(field.path) == Validity::where_1 && field.high == 1.0) {
+        known = std::pair(field.path, 1.0);
+      }
+    }
+    const auto field = std::ranges::find_if(topic->fields, [&](const bag::FieldRange& one) {
+      return known && one.path == known->first;
+    });
     if (field == topic->fields.end() || field->low >= known->second || !can_be_written(name)) {
       return;
     }

@@ -14,24 +14,30 @@
 namespace kelpie::log {
 namespace {
 
-void measure_times(const std::vector<double>& times, double unit_s, bag::TopicReport& topic) {
-  double first = std::numeric_limits<double>::infinity();
-  double last = -first;
-  std::size_t rows = 0;
-  for (const double time : times) {
-    const double t = unit_s * time;
-    if (!std::isfinite(t)) {
-      continue;
+// The times of finite values.
+std::vector<double> times_with(const std::vector<double>& times_s,
+                               const std::vector<double>& values) {
+  std::vector<double> found;
+  for (std::size_t row = 0; row < times_s.size(); ++row) {
+    if (std::isfinite(times_s[row]) && std::isfinite(values[row])) {
+      found.push_back(times_s[row]);
     }
-    if (rows > 0 && t - last > topic.longest_gap_s) {
-      topic.longest_gap_s = t - last;
-      topic.longest_gap_at_s = last - first;
-    }
-    first = rows == 0 ? t : first;
-    last = t;
-    ++rows;
   }
-  topic.rate_hz = last > first ? static_cast<double>(rows - 1) / (last - first) : 0.0;
+  return found;
+}
+
+void measure_times(const std::vector<double>& times_s, bag::BagReport& report) {
+  bag::TopicReport& topic = report.topics.front();
+  const std::vector<double> times = times_with(times_s, times_s);
+  for (std::size_t row = 1; row < times.size(); ++row) {
+    if (times[row] - times[row - 1] > topic.longest_gap_s) {
+      topic.longest_gap_s = times[row] - times[row - 1];
+      topic.longest_gap_at_s = times[row - 1] - times.front();
+    }
+  }
+  topic.rate_hz = measured_rate(times);
+  const auto [low, high] = std::ranges::minmax(times);
+  report.duration_s = high - low;
 }
 
 }  // namespace
@@ -42,6 +48,9 @@ bag::BagReport inspect_table(const Table& table, const RowClock& clock) {
   bag::TopicReport& topic = report.topics.emplace_back();
   topic.type = "a table";
   topic.messages = table.rows();
+  const std::vector<double> times_s = clock.column.empty() && clock.rate_hz == 0.0
+                                          ? std::vector<double>{}
+                                          : row_times_s(table, clock.column, clock.rate_hz, true);
   for (std::size_t column = 0; column < table.names.size(); ++column) {
     if (table.is_of_words(column)) {
       continue;
@@ -56,23 +65,18 @@ bag::BagReport inspect_table(const Table& table, const RowClock& clock) {
                             .finite = statistics.finite(),
                             .not_finite = statistics.not_finite(),
                             .unit = column < table.units.size() ? table.units[column] : "",
-                            .noise = statistics.noise()});
+                            .noise = statistics.noise(),
+                            .rate_hz = measured_rate(times_with(times_s, table.columns[column]))});
   }
-  if (clock.rate_hz > 0.0 && clock.column.empty()) {
-    topic.rate_hz = clock.rate_hz;
-    report.duration_s = static_cast<double>(table.rows() - 1) / clock.rate_hz;
-  } else if (!clock.column.empty()) {
-    const std::size_t time = table.find(clock.column);
-    const double unit_s = table.seconds_per_unit(time);
-    measure_times(table.columns[time], unit_s, topic);
-    const auto field = std::ranges::find(topic.fields, clock.column, &bag::FieldRange::path);
-    report.duration_s = field->finite > 0 ? unit_s * (field->high - field->low) : 0.0;
+  if (std::ranges::any_of(times_s, [](double t) { return std::isfinite(t); })) {
+    measure_times(times_s, report);
   }
   return report;
 }
 
-Table read_table(const std::filesystem::path& file, const Roles& given, std::string& told) {
-  Table table = read_csv(file);
+Table read_table(const LogSource& source, const Roles& given, std::string& told) {
+  const bool recovers = source.mode == bag::ReadMode::recover;
+  Table table = read_csv(source.path, recovers ? &told : nullptr);
   told += drop_missing(table, given);
   told += set_missing_pulses(table);
   told += settle_time_unit(table, given);
@@ -90,7 +94,7 @@ Table read_table(const std::filesystem::path& file, const Roles& given, std::str
 InspectedLog inspect_log(const LogSource& source, const Roles& given) {
   if (!bag::is_bag(source.path)) {
     std::string told;
-    const Table table = read_table(source.path, given, told);
+    const Table table = read_table(source, given, told);
     return {.report = inspect_table(table, row_clock(table, given)),
             .draft = draft_of(table, given),
             .losses = std::move(told)};

@@ -30,7 +30,7 @@ constexpr const char* kSticks = "the pilot's sticks: a controller lies between t
 constexpr const char* kWish = "what a controller is asked for: it lies between this and the motors";
 
 using enum Part;
-using Kind = KnownWord::Kind;
+using Kind = CommandWords::Kind;
 
 constexpr std::array kMessages = std::to_array<KnownMessage>({
     // ROS
@@ -112,14 +112,6 @@ constexpr std::array kMessages = std::to_array<KnownMessage>({
 constexpr const char* kLetters =
     "the controller's output, by the letters of control theory: r, e, u, y";
 
-// Words with blanks between them.
-struct CommandWords {
-  std::string_view words;
-  KnownWord::Kind kind;
-  int rank;
-  std::string_view why = {};
-  bool is_weak = false;
-};
 constexpr std::array kCommandWords = std::to_array<CommandWords>({
     {"thruster# thrusters thrust# thr# motor# motors rpm# rps# pwm# servo# prop# propeller# "
      "throttle# esc# actuator# actuators th# n# m#",
@@ -217,6 +209,7 @@ constexpr std::array kVelocityNames = std::to_array<VelocityNames>({
     {"{roll,pitch,yaw}_speed", 3},
     {"forward_speed", 0},
     {"forward_velocity", 0},
+    {"{roll,pitch,yaw}_rate", 3},
     {"heading_rate", 5},
     {"linear_velocity", 0},
     {"angular_velocity", 5},
@@ -229,6 +222,26 @@ constexpr std::array kVelocityNames = std::to_array<VelocityNames>({
 constexpr std::array kFinWords = std::to_array<std::string_view>(
     {"rudder", "rudders", "fin", "fins", "elevator", "elevators", "plane", "planes", "sternplane",
      "sternplanes", "bowplane", "bowplanes", "aileron", "ailerons", "flap", "flaps", "delta"});
+
+// Last words of a name that are its unit. Not those that are words of their own: s, v, a, rpm.
+struct UnitWords {
+  std::string_view words;
+  const char* unit;
+};
+constexpr std::array kUnitWords = std::to_array<UnitWords>({
+    {"mps m_s", "m/s"},
+    {"cmps cm_s", "cm/s"},
+    {"mmps mm_s", "mm/s"},
+    {"kn kt kts knots", "knots"},
+    {"kmh kph", "km/h"},
+    {"dps degps deg_s", "deg/s"},
+    {"radps rad_s", "rad/s"},
+    {"m", "m"},
+    {"cm", "cm"},
+    {"mm", "mm"},
+    {"deg", "deg"},
+    {"rad", "rad"},
+});
 
 // Parts of a pose, with the words for each.
 struct PoseWords {
@@ -264,13 +277,6 @@ bool is_digit(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-bool is_among_words(std::string_view words, std::string_view word) {
-  const std::string_view stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
-  return std::ranges::any_of(split_text(std::string(words), ' '), [&](const std::string& known) {
-    return word == known || (known.ends_with('#') && known.substr(0, known.size() - 1) == stem);
-  });
-}
-
 // What stands between brackets: "x,y,z", "1..8" or, of an index, "0..3".
 std::vector<std::string> choices(std::string_view text) {
   const std::size_t dots = text.find("..");
@@ -302,23 +308,20 @@ std::span<const KnownMessage> known_messages() {
   return kMessages;
 }
 
-const std::vector<KnownWord>& known_command_words() {
-  static const std::vector<KnownWord> all = [] {
-    std::vector<KnownWord> words;
-    for (const CommandWords& known : kCommandWords) {
-      for (const std::string& word : split_text(known.words, ' ')) {
-        words.push_back({word, known.kind, known.rank, known.why, known.is_weak});
-      }
-    }
-    return words;
-  }();
-  return all;
+std::span<const CommandWords> known_command_words() {
+  return kCommandWords;
+}
+
+bool is_among_words(std::string_view words, std::string_view word) {
+  const std::string_view stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
+  return std::ranges::any_of(split_text(std::string(words), ' '), [&](const std::string& known) {
+    return word == known || (known.ends_with('#') && known.substr(0, known.size() - 1) == stem);
+  });
 }
 
 bool is_command_word(std::string_view word) {
-  return std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
-    return is_among_words(known.word, word);
-  });
+  return std::ranges::any_of(
+      kCommandWords, [&](const CommandWords& known) { return is_among_words(known.words, word); });
 }
 
 std::span<const KnownAffix> known_affixes() {
@@ -351,7 +354,32 @@ std::vector<std::string> expanded(std::string_view fields) {
   return all;
 }
 
-std::vector<std::string> words_of(std::string_view name) {
+namespace {
+
+bool is_of_velocity(const std::string& unit) {
+  return unit.find('/') != std::string::npos || unit == "knots";
+}
+
+// Takes the words of a unit off the end. Returns the unit; "" without one.
+std::string take_unit(std::vector<std::string>& words) {
+  for (const std::size_t count : {std::size_t{2}, std::size_t{1}}) {
+    if (words.size() <= count) {
+      continue;
+    }
+    const auto first = words.end() - static_cast<std::ptrdiff_t>(count);
+    const std::string last = join_text(std::vector(first, words.end()), "_");
+    for (const UnitWords& known : kUnitWords) {
+      if (const auto all = split_text(std::string(known.words), ' ');
+          std::ranges::find(all, last) != all.end()) {
+        words.erase(first, words.end());
+        return known.unit;
+      }
+    }
+  }
+  return "";
+}
+
+std::vector<std::string> all_words_of(std::string_view name) {
   name = trimmed(name);
   if (const std::size_t bracket = name.find_last_of("[(");
       bracket != std::string_view::npos && bracket > 0 && !is_digit(name.substr(bracket + 1, 1))) {
@@ -376,12 +404,27 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
+}  // namespace
+
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words = all_words_of(name);
+  take_unit(words);
+  return words;
+}
+
+std::string unit_in_name(std::string_view name) {
+  std::vector<std::string> words = all_words_of(name);
+  return velocity_by_name(name) || measured_pose_part(name) ? take_unit(words) : "";
+}
+
 namespace {
 
+// By more than the letter of its number, "n1".
 bool is_actuator(const std::string& word) {
-  return std::ranges::any_of(known_command_words(), [&](const KnownWord& known) {
-    return !known.is_weak && known.word.size() > 2 && is_among_words(known.word, word);
-  });
+  return word.find_last_not_of("0123456789") > 0 &&
+         std::ranges::any_of(kCommandWords, [&](const CommandWords& known) {
+           return !known.is_weak && is_among_words(known.words, word);
+         });
 }
 
 // A side, a number, a letter, a field of a thruster's message.
@@ -499,8 +542,16 @@ bool names_fin(std::string_view column) {
 }
 
 std::optional<std::size_t> velocity_by_name(std::string_view name) {
-  const std::string words = join_text(words_of(name), "_");
+  std::vector<std::string> all = all_words_of(name);
+  const std::string unit = take_unit(all);
+  if (!unit.empty() && !is_of_velocity(unit)) {
+    return std::nullopt;
+  }
+  const std::string words = join_text(all, "_");
   static const std::map<std::string, std::size_t> kAxes = axes_by_name();
+  if (const auto known = kAxes.find(words + (unit.empty() ? "" : "_rate")); known != kAxes.end()) {
+    return known->second;
+  }
   if (const auto known = kAxes.find(words); known != kAxes.end()) {
     return known->second;
   }
@@ -509,9 +560,9 @@ std::optional<std::size_t> velocity_by_name(std::string_view name) {
 }
 
 std::optional<std::string> pose_part_by_name(std::string_view name) {
-  std::vector<std::string> words = words_of(name.substr(name.rfind(':') + 1));
-  if (!words.empty() && (words.back() == "deg" || words.back() == "rad" || words.back() == "m")) {
-    words.pop_back();
+  std::vector<std::string> words = all_words_of(name.substr(name.rfind(':') + 1));
+  if (is_of_velocity(take_unit(words))) {
+    return std::nullopt;
   }
   for (const std::size_t count : {std::size_t{2}, std::size_t{1}}) {
     if (words.size() < count) {

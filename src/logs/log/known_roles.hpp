@@ -33,22 +33,24 @@ struct KnownMessage {
   std::string_view why;  ///< reason, written beside the line of the draft
 };
 
-/// A word that marks a single number as a command: a column of a CSV file, a message of one number,
-/// a field of an unknown type.
-struct KnownWord {
+/// Words that mark a single number as a command: a column of a CSV file, a message of one number, a
+/// field of an unknown type.
+struct CommandWords {
   enum class Kind { thrust, angle, wrench };
 
-  std::string word;  ///< in lower case; "rpm#": also rpm1, rpm2; "u_speed": the whole name
-  Kind kind;         ///< two words of a kind for the same thrusters are two readings
-  int rank;          ///< as a message's
+  std::string_view words;  ///< in lower case; "rpm#": also rpm1, rpm2; "u_speed": the whole name
+  Kind kind;               ///< two words of a kind for the same thrusters are two readings
+  int rank;                ///< as a message's
   std::string_view why = {};
   bool is_weak = false;  ///< tells that somebody commands something, not that an actuator does
 };
 
 /// The known messages: of each part of a topic the first match counts.
 std::span<const KnownMessage> known_messages();
-const std::vector<KnownWord>& known_command_words();
+std::span<const CommandWords> known_command_words();
 bool is_command_word(std::string_view word);  ///< One of these, numbered or not.
+/// Whether blanks separate the word, or its letters before a '#', among `words`.
+bool is_among_words(std::string_view words, std::string_view word);
 /// Why a signal of this name is no input of a model, as far as the name alone tells: "a counter",
 /// "a measurement, no command"; "": it may be one.
 std::string why_no_input(std::string_view name);
@@ -79,9 +81,12 @@ std::span<const std::string_view> known_times();
 std::vector<std::string> expanded(std::string_view fields);
 
 /// Splits a name into words in lower case, at other characters than letters and digits, and between
-/// a small and a capital letter; a unit in brackets at the end is dropped: "ThrusterLeft/Cmd [V]"
-/// gives thruster, left, cmd.
+/// a small and a capital letter; a unit at the end is dropped, in brackets or as words:
+/// "ThrusterLeft/Cmd [V]" gives thruster, left, cmd, and "surge_m_s" gives surge.
 std::vector<std::string> words_of(std::string_view name);
+
+/// The unit that the name of a velocity or of a part of a pose ends with: deg/s of "r_dps"; or "".
+std::string unit_in_name(std::string_view name);
 
 /// Whether a column is a fin's, rudder's or other control surface's by a word of the name, numbered
 /// or not.

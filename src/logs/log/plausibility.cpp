@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "core/quantile.hpp"
@@ -21,6 +21,17 @@ namespace kelpie::log {
 namespace {
 
 constexpr const auto& kLimits = kTuning.plausibility;
+
+// How a target goes with the slope of a velocity over the same windows of time.
+struct TargetCheck {
+  std::string target;
+  std::string velocity;
+  double correlation = 0.0;  // of the target's means with the slopes
+  double ratio = 1.0;        // standard deviation of the targets over that of the slopes, signed
+  double offset = 0.0;  // mean of the targets beyond that of the slopes, in deviations of these
+  double late_s = 0.0;  // shift of the target with the largest correlation [s]; 0: none
+  std::string other{};  // the velocity whose acceleration the target is; "": this one
+};
 
 // A unit of a target or of its velocity, which explains a factor between the target and the slope
 // of the velocity.
@@ -63,9 +74,9 @@ class Windows {
   Windows(const Dataset& data, std::size_t velocity, std::size_t target)
       : data_(data), velocity_(velocity), target_(target) {}
 
-  /// Correlation and signed ratio for windows of `length` rows, the target read `late` rows later;
+  /// Moments of slopes and means for windows of `length` rows, the target read `late` rows later;
   /// empty for too few windows, or without motion.
-  std::optional<std::pair<double, double>> compare(std::size_t length, std::ptrdiff_t late) const {
+  std::optional<PairMoments> compare(std::size_t length, std::ptrdiff_t late) const {
     PairMoments moments;
     const auto rows = static_cast<std::ptrdiff_t>(data_.rows());
     const auto step = static_cast<std::ptrdiff_t>(length);
@@ -80,8 +91,7 @@ class Windows {
     if (moments.n < kLimits.least_windows || !moments.varies()) {
       return std::nullopt;
     }
-    const double correlation = moments.correlation();
-    return std::pair(correlation, std::copysign(std::sqrt(moments.yy / moments.xx), correlation));
+    return moments;
   }
 
  private:
@@ -122,6 +132,11 @@ class Windows {
   std::size_t target_;
 };
 
+// Of standard deviations, with the sign of the correlation.
+double ratio_of(const PairMoments& moments) {
+  return std::copysign(std::sqrt(moments.yy / moments.xx), moments.xy);
+}
+
 std::size_t rows_in(double seconds, double rate_hz) {
   return static_cast<std::size_t>(std::max(1.0, std::round(seconds * rate_hz)));
 }
@@ -134,9 +149,9 @@ void find_shift(const Windows& windows, std::size_t length, double rate_hz, doub
   const auto step = static_cast<std::ptrdiff_t>(rows_in(kLimits.late_step_s, rate_hz));
   double best = std::max(kLimits.late_correlation, std::abs(correlation) + kLimits.late_gain);
   for (std::ptrdiff_t late = -most; late <= most; late += step) {
-    const auto pair = windows.compare(length, late);
-    if (pair && pair->first > best && is_plain(pair->second)) {
-      best = pair->first;
+    const auto found = windows.compare(length, late);
+    if (found && found->correlation() > best && is_plain(ratio_of(*found))) {
+      best = found->correlation();
       check.late_s = static_cast<double>(late) / rate_hz;
     }
   }
@@ -151,17 +166,28 @@ std::optional<TargetCheck> check_target(const Dataset& data, std::size_t velocit
   };
   bool measured = false;
   for (const double seconds : kLimits.windows_s) {
-    const auto pair = windows.compare(length_of(seconds), 0);
-    if (pair && std::abs(pair->first) > std::abs(check.correlation)) {
-      std::tie(check.correlation, check.ratio) = *pair;
+    const auto found = windows.compare(length_of(seconds), 0);
+    if (found && std::abs(found->correlation()) > std::abs(check.correlation)) {
+      check.correlation = found->correlation();
+      check.ratio = ratio_of(*found);
+      check.offset = (found->mean_y - found->mean_x) / std::sqrt(found->xx / found->n);
       measured = true;
     }
   }
   // Long windows hide a shift of a second or two.
   const std::size_t shortest = length_of(kLimits.windows_s.front());
   const auto in_short = windows.compare(shortest, 0);
-  if (in_short && std::abs(in_short->first) < kLimits.unrelated) {
-    find_shift(windows, shortest, data.rate_hz, in_short->first, check);
+  if (in_short && std::abs(in_short->correlation()) < kLimits.unrelated) {
+    find_shift(windows, shortest, data.rate_hz, in_short->correlation(), check);
+  }
+  for (std::size_t input = 0; input < data.input_names.size(); ++input) {
+    const bool may_be_its = std::abs(check.correlation) < kLimits.unrelated && input != velocity &&
+                            velocity_axis(data.input_names[input]);
+    const auto found =
+        may_be_its ? Windows(data, input, target).compare(shortest, 0) : std::nullopt;
+    if (found && found->correlation() >= kLimits.least_correlation && is_plain(ratio_of(*found))) {
+      check.other = data.input_names[input];
+    }
   }
   return measured ? std::optional(check) : std::nullopt;
 }
@@ -249,6 +275,11 @@ void add_mistakes_of(const TargetCheck& check, bool is_clock_right, std::vector<
                      "take the acceleration from the velocity by [log.derived] "
                      "(docs/howto/logs.md), or shift the column"});
   }
+  if (!check.other.empty()) {
+    found.push_back({fmt::format("{} is the acceleration of {}, not of {}: columns are exchanged",
+                                 check.target, check.other, check.velocity),
+                     fmt::format("exchange the names of {} and {}", check.velocity, check.other)});
+  }
   if (!shows_ratio(check)) {
     return;
   }
@@ -256,6 +287,13 @@ void add_mistakes_of(const TargetCheck& check, bool is_clock_right, std::vector<
     if (auto unit = unit_mistake(check)) {
       found.push_back(*std::move(unit));
     }
+  }
+  if (std::abs(check.offset) > kLimits.most_offset) {
+    found.push_back({fmt::format("{} lies {:.2g} standard deviations beside the slope of {} in the "
+                                 "mean: a sensor that is tilted, or gravity?",
+                                 check.target, check.offset, check.velocity),
+                     "take its mean off, or leave the column out: slopes of the velocity do",
+                     false});
   }
   if (check.ratio < 0.0) {
     found.push_back({fmt::format("{} has the sign opposite to the slope of {}: the axes of the two "
@@ -336,13 +374,51 @@ std::optional<Mistake> absurd_values(const Dataset& data, std::size_t input) {
                  "a sensor's mark of no value? Leave such cells empty", false};
 }
 
+std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states) {
+  const std::vector<std::size_t> found =
+      find_states(states, data.input_names, data.target_names.size());
+  std::vector<TargetCheck> checks;
+  for (std::size_t target = 0; target < data.target_names.size(); ++target) {
+    const bool is_derived = std::ranges::count(data.derived, data.target_names[target]) > 0;
+    const auto velocity = is_derived ? std::nullopt : velocity_of(data, found, target);
+    if (velocity) {
+      if (const auto check = check_target(data, *velocity, target)) {
+        checks.push_back(*check);
+      }
+    }
+  }
+  return checks;
+}
+
+// A velocity beyond those of all vehicles, as in other units.
+std::optional<Mistake> range_mistake(const Dataset& data, std::size_t input, std::size_t axis) {
+  std::vector<double> sizes;
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    sizes.push_back(std::abs(data.input(row)[input]));
+  }
+  const bool is_turning = axis > 2;
+  const double most = is_turning ? kLimits.fastest_turn_rad_s : kLimits.fastest_m_s;
+  const double usual = quantile(sizes, kLimits.usual_size);
+  if (usual <= most) {
+    return std::nullopt;
+  }
+  const std::string& name = data.input_names[input];
+  return Mistake{fmt::format("{} reaches {:.3g} {}, as of hardly any vehicle", name, usual,
+                             is_turning ? "rad/s" : "m/s"),
+                 fmt::format("--units {}={} converts other units, and its acceleration, too", name,
+                             is_turning ? "deg/s" : "cm/s"),
+                 is_turning && usual > kLimits.certainly_too_fast * most};
+}
+
 }  // namespace
 
 std::vector<Mistake> clock_mistakes(const Dataset& data) {
   std::vector<Mistake> found = data.doubts;
   for (std::size_t input = 0; input < data.input_names.size() && data.rows() > 0; ++input) {
-    if (velocity_axis(data.input_names[input])) {
-      if (const auto mistake = absurd_values(data, input)) {
+    const std::optional<std::size_t> axis = velocity_axis(data.input_names[input]);
+    for (const auto& mistake : {axis ? absurd_values(data, input) : std::nullopt,
+                                axis ? range_mistake(data, input, *axis) : std::nullopt}) {
+      if (mistake) {
         found.push_back(*mistake);
       }
     }
@@ -363,22 +439,6 @@ std::vector<Mistake> clock_mistakes(const Dataset& data) {
   return found;
 }
 
-std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states) {
-  const std::vector<std::size_t> found =
-      find_states(states, data.input_names, data.target_names.size());
-  std::vector<TargetCheck> checks;
-  for (std::size_t target = 0; target < data.target_names.size(); ++target) {
-    const bool is_derived = std::ranges::count(data.derived, data.target_names[target]) > 0;
-    const auto velocity = is_derived ? std::nullopt : velocity_of(data, found, target);
-    if (velocity) {
-      if (const auto check = check_target(data, *velocity, target)) {
-        checks.push_back(*check);
-      }
-    }
-  }
-  return checks;
-}
-
 std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states) {
   const std::vector<TargetCheck> checks = check_targets(data, states);
   std::vector<Mistake> found;
@@ -389,6 +449,12 @@ std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& sta
   for (const TargetCheck& check : checks) {
     add_mistakes_of(check, !clock, found);
   }
+  return found;
+}
+
+std::vector<Mistake> all_mistakes(const Dataset& data, const std::string& states) {
+  std::vector<Mistake> found = target_mistakes(data, states);
+  std::ranges::move(clock_mistakes(data), std::back_inserter(found));
   return found;
 }
 

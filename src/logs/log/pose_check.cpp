@@ -250,8 +250,11 @@ PoseFinding check_pose(const Table& table, const Roles& given) {
     }
   }
   const RowClock clock = row_clock(table, given);
-  const bool has_all = parts.contains("x") && parts.contains("y") && parts.contains("yaw") &&
-                       axes[0] && axes[1] && clock.problem.empty();
+  const bool is_quaternion =
+      parts.contains("qw") && parts.contains("qx") && parts.contains("qy") && parts.contains("qz");
+  const bool has_all = parts.contains("x") && parts.contains("y") &&
+                       (is_quaternion || parts.contains("yaw")) && axes[0] && axes[1] &&
+                       clock.problem.empty();
   if (!has_all) {
     return {};
   }
@@ -266,22 +269,32 @@ PoseFinding check_pose(const Table& table, const Roles& given) {
     std::ranges::for_each(all, [&](double& value) { value *= factor; });
     return all;
   };
-  PoseTrack track{.times_s = row_times_s(table, clock.column, clock.rate_hz),
-                  .x = values(parts.at("x")),
-                  .y = values(parts.at("y")),
-                  .yaw = values(parts.at("yaw")),
-                  .u = values(*axes[0]),
-                  .v = values(*axes[1]),
-                  .r = axes[5] ? values(*axes[5]) : std::vector<double>{}};
+  PoseTrack track{
+      .times_s = row_times_s(table, clock.column, clock.rate_hz),
+      .x = values(parts.at("x")),
+      .y = values(parts.at("y")),
+      .yaw = is_quaternion ? std::vector<double>(table.rows()) : values(parts.at("yaw")),
+      .u = values(*axes[0]),
+      .v = values(*axes[1]),
+      .r = axes[5] ? values(*axes[5]) : std::vector<double>{}};
+  for (std::size_t row = 0; is_quaternion && row < table.rows(); ++row) {
+    const auto q = [&](const char* part) { return table.columns[parts.at(part)][row]; };
+    track.yaw[row] = std::atan2(2.0 * (q("qw") * q("qz") + q("qx") * q("qy")),
+                                1.0 - 2.0 * (q("qy") * q("qy") + q("qz") * q("qz")));
+  }
   const auto name = [&](std::optional<std::size_t> column) {
     return column ? table.names[*column] : "";
   };
-  const PoseNames names{.u = name(axes[0]),
-                        .v = name(axes[1]),
-                        .r = name(axes[5]),
-                        .yaw = name(parts.at("yaw")),
-                        .pose = fmt::format("{},{},{}", name(parts.at("x")), name(parts.at("y")),
-                                            name(parts.at("yaw")))};
+  const std::string heading = table.names[parts.at(is_quaternion ? "qw" : "yaw")];
+  const PoseNames names{
+      .u = name(axes[0]),
+      .v = name(axes[1]),
+      .r = name(axes[5]),
+      .yaw = heading,
+      .pose = fmt::format("{},{},{}", name(parts.at("x")), name(parts.at("y")),
+                          is_quaternion ? fmt::format("{},{},{},{}", heading, name(parts.at("qx")),
+                                                      name(parts.at("qy")), name(parts.at("qz")))
+                                        : heading)};
   PoseFinding found = check_pose(track, names);
   if (std::ranges::none_of(track.yaw, [](double yaw) { return std::abs(yaw) > kFullTurn; })) {
     return found;
@@ -297,21 +310,9 @@ bool is_twist_of_world(const LogSource& source, const std::string& topic) {
       at("pose.pose.position.x"),    at("pose.pose.position.y"),    at("pose.pose.orientation.w"),
       at("pose.pose.orientation.x"), at("pose.pose.orientation.y"), at("pose.pose.orientation.z"),
       at("twist.twist.linear.x"),    at("twist.twist.linear.y")};
-  const Table table = read_columns(source, columns, bag::Clock::receive).table;
-  const auto value = [&](std::size_t column) { return table.columns[column + 1]; };
-  PoseTrack track{.times_s = table.columns[0],
-                  .x = value(0),
-                  .y = value(1),
-                  .yaw = {},
-                  .u = value(6),
-                  .v = value(7),
-                  .r = {}};
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const auto q = [&](std::size_t part) { return table.columns[3 + part][row]; };
-    track.yaw.push_back(
-        std::atan2(2.0 * (q(0) * q(3) + q(1) * q(2)), 1.0 - 2.0 * (q(2) * q(2) + q(3) * q(3))));
-  }
-  return check_pose(track, {}).is_world;
+  Table table = read_columns(source, columns, bag::Clock::receive).table;
+  table.names = {"t", "x", "y", "qw", "qx", "qy", "qz", "u", "v"};
+  return check_pose(table, {}).is_world;
 }
 
 }  // namespace kelpie::log

@@ -105,32 +105,40 @@ bool is_velocity(const SamplingPlan& plan, const std::string& name) {
          (plan.pose && std::ranges::count(plan.pose->sources(), name) > 0);
 }
 
-// A velocity without the messages whose topic calls itself invalid, and without marks of no value.
-// Returns how many there are.
+// Without the messages whose topic calls itself invalid, those of values that stand for none, and
+// those of `others`. Returns how many there are.
 std::size_t drop_invalid(const bag::Series& series, const LogConfig& config, const Roles& roles,
-                         Signal& signal) {
-  const bool are_marks =
-      velocity_axis(signal.name) && std::ranges::count(roles.missing, "none") == 0;
-  const std::optional<double> mark = are_marks ? mark_of_none(signal.values) : std::nullopt;
-  const std::vector<MissingValue> missing = missing_values(roles);
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < signal.values.size(); ++k) {
-    const bool is_invalid =
-        is_velocity(config.plan, signal.name) &&
-        std::ranges::any_of(config.valid, [&](const auto& one) {
-          const std::size_t column = series.column(one.first);
-          return column < series.names.size() && !(series.values[column][k] >= one.second);
-        });
-    const bool is_missing = std::ranges::any_of(missing, [&](const MissingValue& one) {
-      return signal.values[k] == one.value &&
-             (one.column.empty() || one.column == signal.name || one.column == signal.from);
-    });
-    if (is_invalid || is_missing || (mark && signal.values[k] == *mark)) {
-      signal.values[k] = std::numeric_limits<double>::quiet_NaN();
-      ++count;
+                         Rows rows, Signal& signal) {
+  const auto add = [&](const Rows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
+  add(missing_rows(signal.values, roles, {signal.name, signal.from}));
+  if (velocity_axis(signal.name)) {
+    add(mark_rows(signal.values, roles));
+  }
+  for (const auto& [name, least] : config.valid) {
+    const std::size_t column = series.column(name);
+    const bool is_of_signal = column < series.names.size() && is_velocity(config.plan, signal.name);
+    for (std::size_t k = 0; is_of_signal && k < signal.values.size(); ++k) {
+      if (!(series.values[column][k] >= least)) {
+        rows.push_back(k);
+      }
     }
   }
-  return count;
+  drop_rows(rows, signal.values);
+  std::ranges::sort(rows);
+  return static_cast<std::size_t>(std::ranges::unique(rows).begin() - rows.begin());
+}
+
+// Of the velocities over ground that come in one message.
+Rows zeros_of(const bag::Series& series, const LogConfig& config, const Roles& roles) {
+  std::vector<std::span<const double>> velocities;
+  for (const SamplingPlan::Source& source : config.plan.sources) {
+    const std::optional<std::size_t> axis = velocity_axis(source.name);
+    const std::size_t column = series.column(source.from);
+    if (axis && *axis < 3 && column < series.names.size()) {
+      velocities.emplace_back(series.values[column]);
+    }
+  }
+  return zero_rows(velocities, roles);
 }
 
 // Those of the plan's sources.
@@ -187,7 +195,10 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   for (const SamplingPlan::Source& column : config.plan.sources) {
     const bag::Series& series = bag::series_with(all, column.from);
     found.signals.push_back(signal_of(column, series, found.origin_ns));
-    if (const std::size_t count = drop_invalid(series, config, roles, found.signals.back())) {
+    const bool is_over_ground = velocity_axis(column.name).value_or(3) < 3;
+    if (const std::size_t count = drop_invalid(
+            series, config, roles, is_over_ground ? zeros_of(series, config, roles) : Rows{},
+            found.signals.back())) {
       found.losses += fmt::format("{}: {} of {} messages are no measurement of {}{}\n", source.path,
                                   count, series.times_ns.size(), column.name,
                                   count < series.times_ns.size()
@@ -266,16 +277,8 @@ void add_neutral_pulses(const Table& table, Roles& roles) {
     if (found == table.names.end() || roles.actuators.contains(input)) {
       continue;
     }
-    const std::vector<double>& values =
-        table.columns[static_cast<std::size_t>(found - table.names.begin())];
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    const bool is_whole = std::ranges::all_of(values, [&](double value) {
-      low = std::fmin(low, value);
-      high = std::fmax(high, value);
-      return !std::isfinite(value) || value == std::floor(value);
-    });
-    if (is_whole && are_pulses_about_rest(low, high)) {
+    const auto column = static_cast<std::size_t>(found - table.names.begin());
+    if (zeros_among_pulses(table.columns[column]) == 0) {
       roles.actuators[input] = {.neutral = kNeutralPulseUs};
     }
   }
@@ -460,7 +463,7 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
 Log read_log(const LogSource& source, const LogConfig& config, const Roles& roles) {
   const bool is_of_bag = bag::is_bag(source.path);
   std::string told;
-  Table table = is_of_bag ? Table{} : read_table(source.path, roles, told);
+  Table table = is_of_bag ? Table{} : read_table(source, roles, told);
   std::vector<Mistake> doubts;
   if (!is_of_bag && !config.makes_samples() && roles.pose.empty()) {
     doubts = check_pose(table, roles).mistakes;

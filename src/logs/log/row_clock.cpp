@@ -276,7 +276,8 @@ RowClock row_clock(const Table& table, const Roles& given) {
   return clock;
 }
 
-std::vector<double> row_times_s(const Table& table, const std::string& time, double rate_hz) {
+std::vector<double> row_times_s(const Table& table, const std::string& time, double rate_hz,
+                                bool with_words) {
   std::vector<double> times_s(table.rows());
   if (time.empty()) {
     for (std::size_t row = 0; row < times_s.size(); ++row) {
@@ -285,7 +286,9 @@ std::vector<double> row_times_s(const Table& table, const std::string& time, dou
     return times_s;
   }
   const std::size_t column = table.find(time);
-  table.require_numbers(column);
+  if (!with_words) {
+    table.require_numbers(column);
+  }
   const double unit_s = table.seconds_per_unit(column);
   std::ranges::transform(table.columns[column], times_s.begin(),
                          [&](double value) { return unit_s * value; });

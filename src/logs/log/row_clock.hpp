@@ -22,8 +22,9 @@ struct RowClock {
 RowClock row_clock(const Table& table, const Roles& given);
 
 /// The times of the rows [s]: those of the column `time`, or without one rows at `rate_hz`. Throws
-/// InputError on a missing column and on cells that are no numbers.
-std::vector<double> row_times_s(const Table& table, const std::string& time, double rate_hz);
+/// InputError on a missing column and, unless `with_words`, on cells that are no numbers.
+std::vector<double> row_times_s(const Table& table, const std::string& time, double rate_hz,
+                                bool with_words = false);
 
 /// Sets the unit of the time's column where nobody gave one and its name (time_ms) or its size (ms
 /// since 1970, days) leaves no other. Returns a line for the user; "" where nothing was set.

@@ -56,7 +56,12 @@ inline constexpr struct Tuning {
     double most_ratio = 1.7;
     double least_unknown = 0.2;  ///< of a ratio that no known unit explains: by hand
     double most_unknown = 5.0;
-    double certain_clock = 500.0;  ///< ratios of all targets beyond tell of a clock; by hand
+    double most_offset = 0.5;         ///< of a target's mean, in deviations of the slopes: by hand
+    double usual_size = 0.75;         ///< quantile of the sizes of a velocity: by hand
+    double fastest_turn_rad_s = 6.0;  ///< of a vehicle, without a word: a turn a second
+    double fastest_m_s = 30.0;        ///< of a vehicle, likewise; by hand
+    double certainly_too_fast = 3.0;  ///< times these: refused. Hovercraft turn at 13 rad/s
+    double certain_clock = 500.0;     ///< ratios of all targets beyond tell of a clock; by hand
     double clock = 3.0;         ///< factor beside that of a clock where all are so large; by hand
     double near = 0.2;          ///< distance of a ratio from a known factor
     double most_late_s = 5.0;   ///< by hand
@@ -100,7 +105,7 @@ inline constexpr struct Tuning {
   double wanted_rows = 1000.0;     ///< of a short log; by hand
   double few_rows = 300.0;         ///< below: a remark; by hand
   double longest_gap_s = 5.0;      ///< for commands sent on change; by hand
-  double slow_hz = 5.0;            ///< thrusters answer within tenths of a second; by hand
+  double slow_hz = 4.9;            ///< thrusters answer within tenths of a second; by hand
   double farthest_stamps_s = 1.0;  ///< between the median offsets of two clocks; by hand
   double widest_stamps_s = 10.0;   ///< range of a clock's offset; by hand
   double least_motion = 0.1;       ///< heave's range, of the largest velocity's range; by hand

@@ -7,7 +7,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "core/quantile.hpp"
 #include "core/text.hpp"
@@ -54,8 +56,6 @@ std::optional<bool> validity_of(std::string word) {
                                                             : std::nullopt;
 }
 
-using Rows = std::vector<std::size_t>;
-
 // The rows that a column of flags calls invalid; empty: it is no such column.
 Rows flagged_rows(const Table& table, std::size_t column) {
   const std::optional<Validity> known = validity_by_name(table.names[column]);
@@ -88,38 +88,6 @@ Rows flagged_rows(const Table& table, std::size_t column) {
   return rows;
 }
 
-// Rows of exact zeros in all velocities, between rows of a vehicle that moves: nothing stops so.
-Rows zero_rows(const Table& table, const std::vector<std::size_t>& velocities) {
-  std::vector<double> speeds(table.rows());
-  std::vector<double> moving;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    for (const std::size_t column : velocities) {
-      const double speed = std::abs(table.columns[column][row]);
-      speeds[row] = std::isnan(speed) ? speed : std::max(speeds[row], speed);
-    }
-    if (speeds[row] > 0.0) {
-      moving.push_back(speeds[row]);
-    }
-  }
-  const double jump = moving.empty() || velocities.size() < 2
-                          ? HUGE_VAL
-                          : kValidity.least_jump * quantile(moving, 0.9);
-  Rows rows;
-  for (std::size_t row = 0; row < speeds.size();) {
-    std::size_t end = row;
-    while (end < speeds.size() && speeds[end] == 0.0) {
-      ++end;
-    }
-    const bool jumps =
-        row > 0 && end < speeds.size() && speeds[row - 1] > jump && speeds[end] > jump;
-    for (std::size_t k = row; jumps && end - row >= kValidity.least_zeros && k < end; ++k) {
-      rows.push_back(k);
-    }
-    row = std::max(end, row + 1);
-  }
-  return rows;
-}
-
 std::string names_of(const Table& table, const std::vector<std::size_t>& columns) {
   std::vector<std::string> names;
   for (const std::size_t column : columns) {
@@ -132,9 +100,7 @@ std::string names_of(const Table& table, const std::vector<std::size_t>& columns
 std::string drop(Table& table, const std::vector<std::size_t>& columns, const Rows& rows,
                  const std::string& why) {
   for (const std::size_t column : columns) {
-    for (const std::size_t row : rows) {
-      table.columns[column][row] = kNone;
-    }
+    drop_rows(rows, table.columns[column]);
   }
   if (rows.size() == table.rows()) {
     throw InputError({.file = table.source},
@@ -146,38 +112,7 @@ std::string drop(Table& table, const std::vector<std::size_t>& columns, const Ro
                      names_of(table, columns) + (columns.size() == 1 ? " is" : " are"), kKeeps);
 }
 
-std::string drop_marks(Table& table, std::size_t column) {
-  const std::optional<double> mark = mark_of_none(table.columns[column]);
-  Rows rows;
-  for (std::size_t row = 0; mark && row < table.rows(); ++row) {
-    if (is_near(table.columns[column][row], *mark)) {
-      rows.push_back(row);
-    }
-  }
-  return rows.empty() ? ""
-                      : drop(table, {column}, rows,
-                             fmt::format("{}: {:g}, a sensor's mark of no value,",
-                                         table.names[column], *mark));
-}
-
-}  // namespace
-
-std::vector<MissingValue> missing_values(const Roles& given) {
-  std::vector<MissingValue> found;
-  for (const std::string& text : given.missing) {
-    const std::size_t sign = text.rfind('=');
-    MissingValue one{.column = sign == std::string::npos ? "" : text.substr(0, sign)};
-    if (text == "none") {
-      continue;
-    }
-    if (!parse_number(text.substr(sign == std::string::npos ? 0 : sign + 1), one.value)) {
-      throw InputError("--missing", "'" + text + "' is no number; write -999, u=-999, or none");
-    }
-    found.push_back(one);
-  }
-  return found;
-}
-
+// The value that stands for none in a signal; empty: none.
 std::optional<double> mark_of_none(std::span<const double> values) {
   constexpr std::array<double, 11> kMarks{-32.768, 32.767, -32768, 32767,   -999, 999,
                                           -9999,   9999,   -99999, -327.68, 99999};
@@ -203,32 +138,115 @@ std::optional<double> mark_of_none(std::span<const double> values) {
                                                                 : std::nullopt;
 }
 
-std::string drop_missing(Table& table, const Roles& given) {
-  for (const MissingValue& missing : missing_values(given)) {
-    if (!missing.column.empty()) {
-      table.find(missing.column);
+}  // namespace
+
+Rows missing_rows(std::span<const double> values, const Roles& given,
+                  std::initializer_list<std::string_view> names) {
+  Rows rows;
+  for (const std::string& text : given.missing) {
+    const std::size_t sign = text.rfind('=');
+    const std::string_view column =
+        sign == std::string::npos ? "" : std::string_view(text).substr(0, sign);
+    double value = 0.0;
+    if (text == "none") {
+      continue;
     }
-    for (std::size_t column = 0; column < table.names.size(); ++column) {
-      if (missing.column.empty() || missing.column == table.names[column]) {
-        std::ranges::replace(table.columns[column], missing.value, kNone);
+    if (!parse_number(text.substr(sign == std::string::npos ? 0 : sign + 1), value)) {
+      throw InputError("--missing", "'" + text + "' is no number; write -999, u=-999, or none");
+    }
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (values[row] == value && (column.empty() || std::ranges::count(names, column) > 0)) {
+        rows.push_back(row);
       }
     }
+  }
+  return rows;
+}
+
+Rows mark_rows(std::span<const double> values, const Roles& given) {
+  const std::optional<double> mark = is_none(given) ? std::nullopt : mark_of_none(values);
+  Rows rows;
+  for (std::size_t row = 0; mark && row < values.size(); ++row) {
+    if (is_near(values[row], *mark)) {
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+Rows zero_rows(const std::vector<std::span<const double>>& velocities, const Roles& given) {
+  if (velocities.size() < 2 || is_none(given)) {
+    return {};
+  }
+  std::vector<double> speeds(velocities.front().size());
+  std::vector<double> moving;
+  for (std::size_t row = 0; row < speeds.size(); ++row) {
+    for (const std::span<const double> velocity : velocities) {
+      const double speed = std::abs(velocity[row]);
+      speeds[row] = std::isnan(speed) ? speed : std::max(speeds[row], speed);
+    }
+    if (speeds[row] > 0.0) {
+      moving.push_back(speeds[row]);
+    }
+  }
+  const double jump = moving.empty() ? HUGE_VAL : kValidity.least_jump * quantile(moving, 0.9);
+  Rows rows;
+  for (std::size_t row = 0; row < speeds.size();) {
+    std::size_t end = row;
+    while (end < speeds.size() && speeds[end] == 0.0) {
+      ++end;
+    }
+    const bool jumps =
+        row > 0 && end < speeds.size() && speeds[row - 1] > jump && speeds[end] > jump;
+    for (std::size_t k = row; jumps && end - row >= kValidity.least_zeros && k < end; ++k) {
+      rows.push_back(k);
+    }
+    row = std::max(end, row + 1);
+  }
+  return rows;
+}
+
+void drop_rows(const Rows& rows, std::vector<double>& values) {
+  for (const std::size_t row : rows) {
+    values[row] = kNone;
+  }
+}
+
+std::string drop_missing(Table& table, const Roles& given) {
+  for (const std::string& text : given.missing) {
+    if (const std::size_t sign = text.rfind('='); sign != std::string::npos) {
+      table.find(text.substr(0, sign));
+    }
+  }
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    std::vector<double>& values = table.columns[column];
+    drop_rows(missing_rows(values, given, {table.names[column]}), values);
   }
   const std::vector<std::size_t> velocities = velocity_columns(table);
   if (is_none(given) || velocities.empty()) {
     return "";
   }
   std::string told;
+  const auto drop_if_any = [&](const std::vector<std::size_t>& columns, const Rows& rows,
+                               const std::string& why) {
+    told += rows.empty() ? "" : drop(table, columns, rows, why);
+  };
   for (std::size_t column = 0; column < table.names.size(); ++column) {
-    if (const Rows rows = flagged_rows(table, column); !rows.empty()) {
-      told += drop(table, velocities, rows, table.names[column] + " calls velocities invalid");
+    const std::string& name = table.names[column];
+    const std::vector<double>& values = table.columns[column];
+    drop_if_any(velocities, flagged_rows(table, column), name + " calls velocities invalid");
+    if (const Rows rows = mark_rows(values, given); velocity_by_name(name) && !rows.empty()) {
+      const double mark = values[rows.front()];
+      drop_if_any({column}, rows,
+                  fmt::format("{}: {:g}, a sensor's mark of no value,", name, mark));
     }
-    told += velocity_by_name(table.names[column]) ? drop_marks(table, column) : "";
   }
-  if (const Rows rows = zero_rows(table, velocities); !rows.empty()) {
-    told += drop(table, velocities, rows,
-                 names_of(table, velocities) + ": exact zeros between rows of a moving vehicle");
-  }
+  std::vector<std::span<const double>> all;
+  std::ranges::transform(velocities, std::back_inserter(all), [&](std::size_t column) {
+    return std::span<const double>(table.columns[column]);
+  });
+  drop_if_any(velocities, zero_rows(all, given),
+              names_of(table, velocities) + ": exact zeros between rows of a moving vehicle");
   return told;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <cstddef>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,15 +25,22 @@ namespace kelpie::log {
 /// number.
 std::string drop_missing(Table& table, const Roles& given);
 
-/// The value that stands for none in a signal: a sensor's mark, or the farthest value where the
-/// value comes again, three times as far out as all others; empty: none.
-std::optional<double> mark_of_none(std::span<const double> values);
+/// Places of a signal's values that stand for none, in order.
+using Rows = std::vector<std::size_t>;
 
-/// A text of Roles::missing: "-999", "u=0". Throws InputError (--missing) on text without a number.
-struct MissingValue {
-  std::string column;  ///< "": any
-  double value = 0.0;
-};
-std::vector<MissingValue> missing_values(const Roles& given);
+/// Values equal to a number that Roles::missing has for a signal of one of these names. Throws
+/// InputError (--missing) on text without a number.
+Rows missing_rows(std::span<const double> values, const Roles& given,
+                  std::initializer_list<std::string_view> names);
+
+/// Values of a velocity that are a sensor's mark of none, or the farthest value where the value
+/// comes again, three times as far out as all others; none where Roles::missing has "none".
+Rows mark_rows(std::span<const double> values, const Roles& given);
+
+/// Exact zeros in all velocities of one sensor that begin and end with a jump; likewise.
+Rows zero_rows(const std::vector<std::span<const double>>& velocities, const Roles& given);
+
+/// Sets these values to NaN.
+void drop_rows(const Rows& rows, std::vector<double>& values);
 
 }  // namespace kelpie::log

@@ -41,8 +41,7 @@ LearnableLog look_at(const log::LogSource& source, const log::Roles& roles,
     const log::Log log = log::read_log(source, {}, roles);
     warn("{}", log::left_out_text(log.table, log.roles));
     const log::Dataset data = log.dataset();
-    found.mistakes = log::target_mistakes(data, "auto");
-    std::ranges::move(log::clock_mistakes(data), std::back_inserter(found.mistakes));
+    found.mistakes = log::all_mistakes(data, "auto");
     found.look = study::first_look(data);
   } catch (const InputError& error) {
     if (draft.is_complete()) {

@@ -31,25 +31,27 @@ void add_moved(CLI::App& app) {
 }
 
 void add_first_steps(CLI::App& app) {
-  add_examples(&app, "learn dive.csv --rate 4", "learn --help");
+  add_examples(&app, "learn dive.csv --rate 4", "help learn");
 }
 
 }  // namespace
 
 int program(const std::vector<std::string>& words, const Streams& streams) {
-  return run_program("kelpie",
-                     "kelpie learns the dynamics of an underwater vehicle while it drives.",
-                     {add_learn,
+  return run_program(
+      "kelpie", "kelpie learns the dynamics of an underwater vehicle while it drives.",
+      {add_inspect, add_learn,      add_predict,     add_rollout,
 #ifdef KELPIE_WITH_LIVE
-                      add_live,       add_play,
+       add_live,
 #else
-                      add_elsewhere,
+       add_elsewhere,
 #endif
-                      add_predict,    add_export,      add_memory,   add_compare, add_tune,
-                      add_study,      add_config,      add_simulate, add_vehicle, add_health,
-                      add_identify,   add_plan,        add_inspect,  add_convert, add_rollout,
-                      add_completion, add_first_steps, add_help,     add_moved},
-                     words, streams);
+       add_export,  add_simulate,   add_vehicle,     add_identify, add_plan,   add_health,
+       add_compare, add_tune,       add_study,       add_convert,  add_memory,
+#ifdef KELPIE_WITH_LIVE
+       add_play,
+#endif
+       add_config,  add_completion, add_first_steps, add_help,     add_moved,  group_commands},
+      words, streams);
 }
 
 }  // namespace kelpie::cli

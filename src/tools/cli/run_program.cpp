@@ -11,11 +11,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "chart/text_table.hpp"
@@ -211,7 +213,12 @@ void add_all(CLI::App& app, const Commands& commands) {
 
 // CLI11 takes the last word first.
 void parse(CLI::App& app, const std::vector<std::string>& words) {
-  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  std::vector<std::string> last_first(words.rbegin(), words.rend());
+  if (!words.empty() && words.front() == "help") {
+    last_first.back() = "--help";
+    std::ranges::rotate(last_first, std::prev(last_first.end()));
+  }
+  app.parse(std::move(last_first));
 }
 
 // The parser prints what ended it: a help, or what the words lack.
@@ -269,6 +276,21 @@ void run_command(const Commands& commands, const std::vector<std::string>& words
 
 std::vector<const CLI::App*> visible_commands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); });
+}
+
+void group_commands(CLI::App& app) {
+  for (const auto& [group, names] : {std::pair("Every day", "inspect learn predict rollout live"),
+                                     std::pair("Use of a model", "export simulate vehicle"),
+                                     std::pair("Parameters of a vehicle", "identify plan"),
+                                     std::pair("Many logs", "health compare tune study"),
+                                     std::pair("Files", "convert memory play config completion")}) {
+    const std::vector<std::string> all = split_text(names, ' ');
+    for (CLI::App* const command : app.get_subcommands({})) {
+      if (!command->get_group().empty() && std::ranges::count(all, command->get_name()) > 0) {
+        command->group(group);
+      }
+    }
+  }
 }
 
 void add_help(CLI::App& app) {

@@ -22,4 +22,8 @@ int run_program(const std::string& name, const std::string& meaning, const Comma
 /// StreamGuard, and throws InputError on words that no command takes, and what the command throws.
 void run_command(const Commands& commands, const std::vector<std::string>& words);
 
+/// Puts the commands of kelpie into groups by need; the help lists the groups by their first
+/// commands.
+void group_commands(CLI::App& app);
+
 }  // namespace kelpie::cli

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -25,7 +26,7 @@ class Help : public testing::CommandTest {
 
   std::vector<std::string> commands() {
     const std::string text = help("--help");
-    const std::size_t begin = text.find("Subcommands:");
+    const std::size_t begin = text.find("Every day:");
     return matches(text.substr(begin, text.find("\nExamples:") - begin), "\n  ([a-z]+) ");
   }
 };
@@ -42,6 +43,13 @@ TEST_F(Help, OfAllCommandsHasEveryOptionOfEachUnderItsName) {
     }
   }
   EXPECT_NE(all.find("\nkelpie memory show "), std::string::npos);
+}
+
+TEST_F(Help, IsACommandToo) {
+  for (const std::string command : {"", "learn", "memory show"}) {
+    const std::string text = help(command + " --help");
+    EXPECT_EQ(help("help " + command).substr(0, 500), text.substr(0, 500)) << command;
+  }
 }
 
 TEST_F(Help, SaysWhereACommandIsThatThisProgramIsWithout) {
@@ -82,14 +90,14 @@ TEST_F(Help, HasExamplesThatParse) {
 }
 
 TEST_F(Help, IsWhatACommandWithNothingToDoSays) {
-  for (const auto& [words, usage] :
-       {std::pair{"", "Usage: kelpie [OPTIONS] SUBCOMMAND"},
-        std::pair{"memory", "Usage: kelpie memory [OPTIONS] SUBCOMMAND"}}) {
+  for (const auto& [words, usage, first] :
+       {std::array{"", "Usage: kelpie [OPTIONS] SUBCOMMAND", "\nEvery day:\n  inspect "},
+        std::array{"memory", "Usage: kelpie memory [OPTIONS] SUBCOMMAND", "\nSubcommands:\n"}}) {
     const testing::Outcome outcome = run(words);
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_EQ(outcome.out, "");
     EXPECT_NE(outcome.err.find(usage), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find("\nSubcommands:\n"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(first), std::string::npos) << outcome.err;
   }
 }
 

@@ -206,6 +206,71 @@ TEST_F(LogMeaning, TimeByOption) {
   }
 }
 
+// Dropped rows and cells do not change the rate.
+TEST_F(LogMeaning, RowsThatAreMissing) {
+  std::string dropped;
+  std::size_t line = 0;
+  const std::string whole = boat("t", number(&Row::t));
+  for (std::size_t begin = 0; begin < whole.size();) {
+    const std::size_t end = whole.find('\n', begin) + 1;
+    dropped += ++line > 1 && line % 5 == 0 ? "" : whole.substr(begin, end - begin);
+    begin = end;
+  }
+  expect({{dropped, "", 0, kTwoMinutes}, {dropped, "", 0, "u = u (5 Hz"}});
+}
+
+TEST_F(LogMeaning, FilesThatLossOfPowerEnded) {
+  const std::string log = boat("t", number(&Row::t));
+  const std::string cut = log.substr(0, log.rfind(','));
+  const std::string nul = log + std::string(500, '\0');
+  std::string commas = log;
+  for (std::size_t end = 0; (end = commas.find('\n', end)) != std::string::npos; end += 2) {
+    commas.insert(end, ",");
+  }
+  expect({{cut, "", 2, "log.csv:601: 5 cells in this row; the header has 6: the file ends within"},
+          {cut, "--recover", 0, "log.csv:601: is cut off; left out"},
+          {nul, "", 2, "ends in 500 NUL bytes, as after a loss of power; --recover reads what"},
+          {nul, "--recover", 0, "500 NUL bytes at the end; left out"},
+          {log + log.substr(0, log.find('\n') + 1), "--recover", 0,
+           "log.csv:602: is the header again; left out"},
+          {commas, "", 2, "column 7: has no name"},
+          {commas, "--recover", 0, "log.csv:1: ends in an empty column; left out"}});
+}
+
+TEST_F(LogMeaning, UnitsInNames) {
+  const double knots = 1.0 / 0.514444;
+  const std::string log = log_of({{"t", number(&Row::t)},
+                                  {"surge_kn", number(&Row::u, knots)},
+                                  {"sway_m_s", number(&Row::v)},
+                                  {"yaw_deg_s", number(&Row::r, 57.29578)},
+                                  {"x_m", number(&Row::x)},
+                                  {"y_m", number(&Row::y)},
+                                  {"yaw_deg", number(&Row::psi, 57.29578)},
+                                  {"n1", number(&Row::n1)},
+                                  {"n2", number(&Row::n2)}});
+  expect({{log, "", 0, "u = surge_kn (knots, 5 Hz"},
+          {log, "", 0, "r = yaw_deg_s (deg/s, 5 Hz"},
+          {log, "", 0, "psi = yaw_deg (deg, 5 Hz"},
+          {log, "", 0, "commands: n1, n2\n"},
+          {log, "--pose x_m,y_m,yaw_deg", 0, kTwoMinutes}});
+  // Poses that are named count in the units of the header, as poses that are found.
+  write("log.csv", log_of({{"t", number(&Row::t)},
+                           {"x [cm]", number(&Row::x, 100.0)},
+                           {"y [cm]", number(&Row::y, 100.0)},
+                           {"psi", number(&Row::psi)},
+                           {"n1", number(&Row::n1)},
+                           {"n2", number(&Row::n2)}}));
+  const auto axes = [&](const std::string& options) {
+    testing::succeeded(run("learn log.csv --out out" + testing::kFewSamples + options));
+    std::vector<double> r2;
+    for (const auto& axis : parsed("out/result.json")["axes"]) {
+      r2.push_back(axis["r2"]["final"]);
+    }
+    return r2;
+  };
+  EXPECT_EQ(axes(" --pose x,y,psi"), axes(""));
+}
+
 TEST_F(LogMeaning, TablesOfOtherPrograms) {
   const Columns timed = [] {
     Columns columns{{"t", number(&Row::t)}};
@@ -275,6 +340,36 @@ TEST_F(LogMeaning, RolesByReason) {
   expect({{ready, "", 0, "commands: n1, n2, wave\n"},
           {ready, "", 0, "u_next: is left out of the inputs: u of another row; --inputs takes it"},
           {ready, "", 0, "later: is left out of the inputs: goes with u, read 1 rows later"}});
+}
+
+TEST_F(LogMeaning, AccelerationsBesideVelocities) {
+  const std::vector<Row> rows = drive(0.2, 600);
+  const auto slope = [&](double Row::*of, double factor, double offset) {
+    return [&rows, of, factor, offset](const Row& row) {
+      const auto k = static_cast<std::size_t>(std::clamp(row.k, 1, 598));
+      return fmt::format("{:.6f}", offset + factor * (rows[k + 1].*of - rows[k - 1].*of) / 0.4);
+    };
+  };
+  const auto log = [&](double Row::*u, double Row::*v, double offset, double turn) {
+    return log_of({{"t", number(&Row::t)},
+                   {"u", number(u)},
+                   {"v", number(v)},
+                   {"r", number(&Row::r, turn)},
+                   {"n1", number(&Row::n1)},
+                   {"n2", number(&Row::n2)},
+                   {"udot", slope(&Row::u, 1.0, 0.0)},
+                   {"vdot", slope(&Row::v, 1.0, offset)},
+                   {"rdot", slope(&Row::r, turn, 0.0)}});
+  };
+  const double degrees = 57.29578;
+  expect({{log(&Row::u, &Row::v, 0.0, 1.0), "", 0, "R²"},
+          {log(&Row::v, &Row::u, 0.0, 1.0), "", 2, "udot is the acceleration of v, not of u"},
+          {log(&Row::u, &Row::v, 0.3, 1.0), "", 0, "standard deviations beside the slope of v"},
+          {log(&Row::u, &Row::v, 0.0, degrees), "", 2,
+           "rad/s, as of hardly any vehicle; --units r=deg/s"},
+          {log(&Row::u, &Row::v, 0.0, degrees), "--units r=deg/s,rdot=deg/s^2", 0, "R²"}});
+  write("log.csv", log(&Row::u, &Row::v, 0.0, degrees));
+  testing::expect_refused(run("identify log.csv --out out"), "rad/s, as of hardly any vehicle");
 }
 
 TEST_F(LogMeaning, VelocitiesThatAreNotMeasured) {
@@ -398,6 +493,16 @@ TEST_F(LogMeaning, Recordings) {
     message.set("velocity.y", is_valid ? row.v : 0.01);
     message.set("velocity_valid", is_valid ? 1.0 : 0.0);
   };
+  // A mark of no value is rounded as other numbers are.
+  const auto twist_or = [](double none) {
+    return [none](bag::MessageBuilder& message, const Row& row) {
+      const bool is_valid = row.k % 150 < 120;
+      const double mark = none * (1.0 + 1e-5 * (row.k % 3));
+      message.set("twist.linear.x", is_valid ? row.u : mark);
+      message.set("twist.linear.y", is_valid ? row.v : mark);
+      message.set("twist.angular.z", row.r);
+    };
+  };
   const Fill odometry = [](bag::MessageBuilder& message, const Row& row) {
     message.set("pose.pose.position.x", row.x);
     message.set("pose.pose.position.y", row.y);
@@ -416,6 +521,10 @@ TEST_F(LogMeaning, Recordings) {
   expect({
       {recording("/dvl/data", "dvl_msgs/msg/DVL", dvl), "", 0,
        "120 of 600 messages are no measurement of u"},
+      {recording("/vel", "geometry_msgs/msg/TwistStamped", twist_or(0.0)), "", 0,
+       "of 600 messages are no measurement of u"},
+      {recording("/vel", "geometry_msgs/msg/TwistStamped", twist_or(-32.768)), "", 0,
+       "120 of 600 messages are no measurement of v"},
       {recording("/odom", "nav_msgs/msg/Odometry", odometry,
                  {"/usv_control/sast/y_sigma", "/motor_driver/board/humidity",
                   "/thruster_manager/rssi", "/control/reference/heading"}),
