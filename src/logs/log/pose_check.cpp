@@ -197,6 +197,32 @@ std::optional<Mistake> turn_mistake(const PairMoments& turns, const PoseNames& n
   return std::nullopt;
 }
 
+using Columns = std::map<std::string, std::size_t>;  // of the parts of a pose
+
+// A column in units of the SI.
+std::vector<double> si_values(const Table& table, const Roles& given, std::size_t column) {
+  const auto own = given.units.find(table.names[column]);
+  const std::string unit = own != given.units.end()      ? own->second
+                           : column < table.units.size() ? table.units[column]
+                                                         : "";
+  const double factor =
+      unit.empty() ? 1.0 : si_unit(table.source, table.names[column], unit).second;
+  std::vector<double> all = table.columns[column];
+  std::ranges::for_each(all, [&](double& value) { value *= factor; });
+  return all;
+}
+
+// Of the quaternion's columns [rad].
+std::vector<double> yaw_of_quaternion(const Table& table, const Columns& parts) {
+  std::vector<double> yaw(table.rows());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto q = [&](const char* part) { return table.columns[parts.at(part)][row]; };
+    yaw[row] = std::atan2(2.0 * (q("qw") * q("qz") + q("qx") * q("qy")),
+                          1.0 - 2.0 * (q("qy") * q("qy") + q("qz") * q("qz")));
+  }
+  return yaw;
+}
+
 }  // namespace
 
 PoseFinding check_pose(const PoseTrack& track, const PoseNames& names) {
@@ -236,7 +262,7 @@ PoseFinding check_pose(const PoseTrack& track, const PoseNames& names) {
 }
 
 PoseFinding check_pose(const Table& table, const Roles& given) {
-  std::map<std::string, std::size_t> parts;  // of the pose
+  Columns parts;
   std::array<std::optional<std::size_t>, 6> axes;
   for (std::size_t column = 0; column < table.names.size(); ++column) {
     const std::string& name = table.names[column];
@@ -258,30 +284,14 @@ PoseFinding check_pose(const Table& table, const Roles& given) {
   if (!has_all) {
     return {};
   }
-  const auto values = [&](std::size_t column) {
-    const auto own = given.units.find(table.names[column]);
-    const std::string unit = own != given.units.end()      ? own->second
-                             : column < table.units.size() ? table.units[column]
-                                                           : "";
-    const double factor =
-        unit.empty() ? 1.0 : si_unit(table.source, table.names[column], unit).second;
-    std::vector<double> all = table.columns[column];
-    std::ranges::for_each(all, [&](double& value) { value *= factor; });
-    return all;
-  };
-  PoseTrack track{
-      .times_s = row_times_s(table, clock.column, clock.rate_hz),
-      .x = values(parts.at("x")),
-      .y = values(parts.at("y")),
-      .yaw = is_quaternion ? std::vector<double>(table.rows()) : values(parts.at("yaw")),
-      .u = values(*axes[0]),
-      .v = values(*axes[1]),
-      .r = axes[5] ? values(*axes[5]) : std::vector<double>{}};
-  for (std::size_t row = 0; is_quaternion && row < table.rows(); ++row) {
-    const auto q = [&](const char* part) { return table.columns[parts.at(part)][row]; };
-    track.yaw[row] = std::atan2(2.0 * (q("qw") * q("qz") + q("qx") * q("qy")),
-                                1.0 - 2.0 * (q("qy") * q("qy") + q("qz") * q("qz")));
-  }
+  const auto values = [&](std::size_t column) { return si_values(table, given, column); };
+  PoseTrack track{.times_s = row_times_s(table, clock.column, clock.rate_hz),
+                  .x = values(parts.at("x")),
+                  .y = values(parts.at("y")),
+                  .yaw = is_quaternion ? yaw_of_quaternion(table, parts) : values(parts.at("yaw")),
+                  .u = values(*axes[0]),
+                  .v = values(*axes[1]),
+                  .r = axes[5] ? values(*axes[5]) : std::vector<double>{}};
   const auto name = [&](std::optional<std::size_t> column) {
     return column ? table.names[*column] : "";
   };
