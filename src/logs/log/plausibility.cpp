@@ -403,11 +403,13 @@ std::optional<Mistake> range_mistake(const Dataset& data, std::size_t input, std
     return std::nullopt;
   }
   const std::string& name = data.input_names[input];
-  return Mistake{fmt::format("{} reaches {:.3g} {}, as of hardly any vehicle", name, usual,
+  const bool is_certain = is_turning && usual > kLimits.certainly_too_fast * most;
+  return Mistake{fmt::format("{0}{1} reaches {2:.3g} {3}, as of hardly any vehicle",
+                             is_certain ? name + " is in degrees per second: " : "", name, usual,
                              is_turning ? "rad/s" : "m/s"),
                  fmt::format("--units {}={} converts other units, and its acceleration, too", name,
                              is_turning ? "deg/s" : "cm/s"),
-                 is_turning && usual > kLimits.certainly_too_fast * most};
+                 is_certain};
 }
 
 }  // namespace

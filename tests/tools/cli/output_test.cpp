@@ -29,7 +29,7 @@ TEST_F(Output, ASlipOfTheFingerIsToldWhatWasMeant) {
   EXPECT_EQ(
       said("lern log.csv").find("There is no command 'lern' (did you mean 'learn'?); there are"),
       0U);
-  EXPECT_EQ(said("surface log.csv").find("There is no command 'surface'; there are learn, live"),
+  EXPECT_EQ(said("surface log.csv").find("There is no command 'surface'; there are inspect, learn"),
             0U);
   EXPECT_EQ(said("learn log.csv --rat 4"), "There is no option --rat (did you mean '--rate'?)");
   EXPECT_EQ(said("learn log.csv --rat=4"), "There is no option --rat (did you mean '--rate'?)");
