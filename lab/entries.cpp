@@ -12,9 +12,9 @@
 
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
+#include "file/child_process.hpp"
 #include "file/content.hpp"
 #include "file/json.hpp"
-#include "file/run_program.hpp"
 #include "kelpie/core/error.hpp"
 #include "log/candidates.hpp"
 
@@ -167,7 +167,7 @@ std::vector<EntryRuns> run_entries(const std::vector<std::string>& places,
   }
   const fs::path output = folder.path() / "output";
   const int status =
-      file::run_program(words, "Python", "--entry needs Python with kelpie's package", output);
+      file::run_child(words, "Python", "--entry needs Python with kelpie's package", output);
   if (status != 0) {
     const std::string reason = reason_in(output);
     if (WIFEXITED(status) && WEXITSTATUS(status) == 2) {

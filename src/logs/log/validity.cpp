@@ -235,7 +235,8 @@ std::string drop_missing(Table& table, const Roles& given) {
     const std::string& name = table.names[column];
     const std::vector<double>& values = table.columns[column];
     drop_if_any(velocities, flagged_rows(table, column), name + " calls velocities invalid");
-    if (const Rows rows = mark_rows(values, given); velocity_by_name(name) && !rows.empty()) {
+    const Rows rows = velocity_by_name(name) ? mark_rows(values, given) : Rows{};
+    if (!rows.empty()) {
       const double mark = values[rows.front()];
       drop_if_any({column}, rows,
                   fmt::format("{}: {:g}, a sensor's mark of no value,", name, mark));

@@ -13,8 +13,8 @@
 
 #include "core/text.hpp"
 #include "file/atomic_file.hpp"
+#include "file/child_process.hpp"
 #include "file/mapped_file.hpp"
-#include "file/run_program.hpp"
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "model/model_axis.hpp"
@@ -66,8 +66,8 @@ class LibraryDraft {
     const std::string compiler = join_text(words, " ");
     words.insert(words.end(), {"-std=c99", "-O3", "-march=native", "-fPIC", "-shared", "-o",
                                library_.string(), source_.string(), "-lm"});
-    if (file::run_program(std::move(words), "the C compiler",
-                          "the environment variable CC names another") != 0) {
+    if (file::run_child(std::move(words), "the C compiler",
+                        "the environment variable CC names another") != 0) {
       throw Failure("the C compiler '" + compiler + "' could not compile " + files.source.string());
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "file/run_program.hpp"
+#include "file/child_process.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -13,8 +13,8 @@
 
 namespace kelpie::file {
 
-int run_program(std::vector<std::string> words, const std::string& what, const std::string& remedy,
-                const std::filesystem::path& output) {
+int run_child(std::vector<std::string> words, const std::string& what, const std::string& remedy,
+              const std::filesystem::path& output) {
   std::vector<char*> arguments;
   for (std::string& word : words) {
     arguments.push_back(word.data());
