@@ -154,6 +154,11 @@ void put_targets(std::span<const Snapshot> snapshots, NumberWriter& out) {
       out.put(low * term_scale[k]);
       out.put(high * term_scale[k]);
     }
+    for (std::size_t k = 0; k < term_scale.size(); ++k) {
+      out.put(axis.function.nominal.empty()
+                  ? 0.0
+                  : target.scale * axis.function.nominal[k] / term_scale[k]);
+    }
   }
 }
 
@@ -294,7 +299,7 @@ BlockLayout BlockLayout::of(std::span<const std::string> input_names,
 std::size_t BlockLayout::slot_words() const {
   const std::size_t numbers = kNumbersOfSlot + kNumbersOnce +
                               inputs * (2 + Actuator::fields().size()) +
-                              targets * (kNumbersOfTarget + inputs + inputs * inputs + 2 * terms) +
+                              targets * (kNumbersOfTarget + inputs + inputs * inputs + 3 * terms) +
                               members * (kNumbersOfMember + terms) + vectors * (inputs + 1) +
                               (places > 0 ? targets * kNumbersOfKnown + places * (inputs + 1) : 0);
   return (numbers + kWordsOfCacheLine - 1) / kWordsOfCacheLine * kWordsOfCacheLine;

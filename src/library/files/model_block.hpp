@@ -30,7 +30,8 @@ namespace kelpie {
 ///     once         shift of the commands [s]; members, support vectors, places
 ///     per target   first and last member; lower and upper limit, caution, square of the target's
 ///                  scale; mean of the inputs, whitening (row-major), least and greatest value of
-///                  every term, ±infinity without a limit
+///                  every term, ±infinity without a limit; every term's coefficient of a vehicle
+///                  known beforehand
 ///     per member   share, first and last support vector, γ, s, fine, offset, coefficients
 ///     vectors      all support vectors, scaled; all weights, in target units; in groups of
 ///                  kLanes of one member, of which first comes the first input of all, and so on;
@@ -41,7 +42,7 @@ namespace kelpie {
 /// The last two parts only where there is room for places. src/tools/format/model_block.inc reads
 /// the same.
 struct BlockLayout {
-  static constexpr std::uint64_t kMark = 0x3330'6b6c'656b'6c62;  // "blkelk03"
+  static constexpr std::uint64_t kMark = 0x3430'6b6c'656b'6c62;  // "blkelk04"
   static constexpr std::size_t kHeaderWords = 16;
   static constexpr std::size_t kLanes = 4;  ///< support vectors that are evaluated together
 

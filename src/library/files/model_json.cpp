@@ -208,6 +208,9 @@ FunctionMix read_mix(const JsonNode& node, std::size_t inputs, std::size_t terms
     }
     node["term_ranges"].require(mix.term_ranges.size() == terms, "needs a range per physics term");
   }
+  if (has(node, "nominal") && !node["nominal"].json().empty()) {
+    mix.nominal = node["nominal"].numbers(terms);
+  }
   return mix;
 }
 

@@ -15,7 +15,7 @@ void MemberShares::score(std::span<const double> errors, std::size_t block) {
   for (std::size_t k = 0; k < members_; ++k) {
     // What isn't a number is no better than the worst.
     const double error = errors[k] < kOnline.shares.clip ? errors[k] : kOnline.shares.clip;
-    block_[k] += error * std::sqrt(error);
+    block_[k] += error * error;
   }
   if (++scored_ >= block) {
     learn_block();

@@ -18,8 +18,8 @@ namespace kelpie {
 ///     L_k ← λₙ L_k + mean loss of block n,  λₙ = min(λ, 1 − 1/n)
 ///     A ← λₙ A + Σ share_k · mean loss of block n,  Q ← λₙ² Q + (Σ share_k · mean loss)²
 ///
-/// The loss of an error is |error|^1.5, the error at most 3: between absolute errors, which a calm
-/// vehicle's rare manoeuvres hardly change, and squares, which garbage changes much.
+/// The loss of an error is the square, of an error of at most 10: rare manoeuvres of a calm vehicle
+/// count most. Samples that may be garbage are not for score().
 /// Division by the committee's own losses A makes the weights independent of the noise level. The
 /// first losses are of members that have learned little: λₙ gives block m of the first blocks a
 /// weight in proportion to m, and the exponent grows as √n at first (Cesa-Bianchi & Lugosi 2006,

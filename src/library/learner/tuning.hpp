@@ -98,8 +98,8 @@ struct OnlineTuning {
     double learning_rate = 5.0;  ///< η
     double keep = 0.98;          ///< λ per block: a memory of 50 blocks
     double least_share = 1e-9;
-    double clip = 3.0;          ///< largest error of one sample [standard deviations]
-    double least_usual = 3e-5;  ///< smallest usual loss [standard deviations^1.5]
+    double clip = 10.0;         ///< largest error of one sample [standard deviations]
+    double least_usual = 1e-6;  ///< smallest usual loss [variances]
     double slope_keep = 0.999;  ///< λ per sample: a memory of 1,000 samples
     double slope_prior = 10.0;  ///< weight of slope 1 [samples]
     double slope_clip = 3.0;    ///< largest value of one sample [standard deviations]

@@ -118,8 +118,8 @@ void PosteriorAxis::learn_held_back() {
 
 // The solution of the posterior goes into service.
 void PosteriorAxis::take_over() {
-  const bool fits = has_scale_ && posterior_.sums().targets(prior_).scale <
-                                      kPosterior.outgrown * scaling_.target.scale;
+  const bool fits =
+      has_scale_ && posterior_.sums().targets().scale < kPosterior.outgrown * scaling_.target.scale;
   fits ? serve() : change_scale();
 }
 
@@ -222,11 +222,14 @@ double PosteriorAxis::trust(std::span<const double> x, double t) {
 
 void PosteriorAxis::learn(const RowScreen::Due& due) {
   const auto& [x, y, left, t] = due.row;
-  if (has_scale_) {
-    mixture_.update(as_span(scale_sample(scaling_, terms(), x)), scaling_.target.apply(y), t,
-                    block_length());
-  }
   const double trust = this->trust(x, t);
+  if (has_scale_) {
+    const ScaledSample z = scale_sample(scaling_, terms(), x);
+    if (trust == 1.0) {
+      mixture_.score(as_span(z), in_scale(left), block_length());
+    }
+    mixture_.update(as_span(z), in_scale(left), t);
+  }
   if (const std::optional<Matrix> map = features_.observe(x, trust)) {
     posterior_.change_features(features_.terms_end(), *map);
     past_.change_features(*map);
@@ -255,8 +258,9 @@ double PosteriorAxis::expected(std::span<const double> x) const {
 // Inputs in the units of the kernel; terms and target by their sizes so far.
 void PosteriorAxis::change_scale() {
   AxisScaling next{.input = features_.units(),
-                   .target = posterior_.sums().targets(prior_),
+                   .target = posterior_.sums().targets(),
                    .term_scale = std::vector<double>(terms().size(), 1.0)};
+  next.target.mean += known(0);
   for (std::size_t k = 0; k < terms().size(); ++k) {
     const double size = posterior_.sums().root_mean_square(k + 1);
     if (size > 0.0) {
@@ -281,19 +285,7 @@ PosteriorAxis::TermWeights PosteriorAxis::in_scale(TermWeights weights, double b
   return weights;
 }
 
-// Of what a posterior says, and of what was known beforehand.
-PosteriorAxis::TermWeights PosteriorAxis::scaled(std::span<const double> theta,
-                                                 double centre) const {
-  TermWeights weights(theta.size());
-  for (std::size_t k = 0; k < theta.size(); ++k) {
-    weights[k] = theta[k] + known(k);
-  }
-  return in_scale(weights, scaling_.target.apply(centre + theta[0] + known(0)));
-}
-
 void PosteriorAxis::serve() {
-  mean_ = posterior_.centre() +
-          (posterior_.sums().targets(prior_).mean - posterior_.sums().targets().mean);
   certain_ = certain_range();
   assign_members();
 }
@@ -306,21 +298,27 @@ void PosteriorAxis::assign_members() {
   std::ranges::transform(theta.subspan(first), scratch_.begin(),
                          [&](double weight) { return weight / scaling_.target.scale; });
   features_.basis().to_kernel(scratch_);
-  mixture_.assign_posterior(
-      features_.basis().centres(), scratch_,
-      as_span(scaled(theta.first(first), posterior_.centre())),
-      {scaling_.target.apply(certain_.low), scaling_.target.apply(certain_.high)});
-  mixture_.assign_terms(as_span(scaled(posterior_.first_weights(), posterior_.centre())));
-  const double mean = scaling_.target.apply(mean_);
+  const double centre = posterior_.centre();
+  const auto scaled = [&](std::span<const double> weights, double bias) {
+    TermWeights copy(weights.size());
+    std::ranges::copy(weights, copy.begin());
+    return in_scale(copy, bias);
+  };
+  const auto own = scaled(theta.first(first), in_scale(centre + theta[0]));
+  mixture_.assign_posterior(features_.basis().centres(), scratch_, as_span(own),
+                            {in_scale(certain_.low), in_scale(certain_.high)});
+  const std::span<const double> alone = posterior_.first_weights();
+  mixture_.assign_terms(as_span(scaled(alone, in_scale(centre + alone[0]))));
+  const double mean = in_scale(centre);
   mixture_.assign_mean({&mean, 1});
+  if (!prior_.empty()) {
+    mixture_.assign_nominal(as_span(scaled(prior_, 0.0)).first(first - 1));
+  }
 }
 
 // All that the inputs do, each alone beside the means of the others, at the ends of its range, as
 // far as certain to three standard errors of the terms.
 ValueRange PosteriorAxis::certain_range() {
-  if (!prior_.empty()) {
-    return {};  // of a vehicle known beforehand everything is certain
-  }
   std::vector<double>& x = place_;
   x = features_.units().mean;
   std::array<double, kMostTerms + 1> room{}, moved{};
@@ -417,6 +415,7 @@ void PosteriorAxis::refresh(Snapshot& copy) const {
   copy.scaling = scaling_;
   copy.function.limits = served.limits;
   copy.function.term_ranges = served.term_ranges;
+  copy.function.nominal = served.nominal;
   for (std::size_t k = 0; k < served.members.size(); ++k) {
     copy.function.members[k].share = served.members[k].share;
     copy.function.members[k].function.assign(served.members[k].function);
@@ -516,6 +515,9 @@ void PosteriorAxis::visit(Archive& archive) {
   archive.part("screen", screen_);
   archive.part("past vehicles", past_);
   archive.list(prior_, terms().size() + 1, [&](double& one) { archive.number(one); });
+  if (archive.loading() && !prior_.empty()) {
+    mixture_.expect_vehicle();
+  }
   uncertainty_.visit(archive);
   archive.number(last_s_);
   archive.number(far_s_);
@@ -528,9 +530,8 @@ void PosteriorAxis::visit(Archive& archive) {
   if (has_scale_) {
     scaling_.visit(archive, features_.units().dimension(), terms().size());
     archive.part("mixture", mixture_);
-    archive.number(mean_);
-    archive.any_number(certain_.low);
-    archive.any_number(certain_.high);
+    archive.number(certain_.low);
+    archive.number(certain_.high);
     if (archive.loading()) {
       assign_members();
     }

@@ -70,8 +70,8 @@ class PosteriorAxis final : public ModelAxis {
 
   void apply_change(std::span<const CommandGain> gains, std::span<const double> step,
                     const Decision& news) override;
-  /// The prior's mean: coefficients of the terms, the last of the term 1. Requires that nothing has
-  /// been learned yet.
+  /// The prior's mean: coefficients of the terms, the last of the term 1. What is learned is what
+  /// this vehicle leaves. Requires that nothing has been learned yet.
   void expect_vehicle(std::vector<double> coefficients) override;
   /// The vehicles left, and the one in service.
   std::vector<StoredPastModel> past_models() const override;
@@ -95,7 +95,7 @@ class PosteriorAxis final : public ModelAxis {
   void recall(const PastVehicle& back, Decision& decision);
   void change_scale();
   TermWeights in_scale(TermWeights weights, double bias) const;
-  TermWeights scaled(std::span<const double> theta, double centre) const;
+  double in_scale(double left) const { return scaling_.target.apply(left + known(0)); }
   void tell_anew(std::span<const double> step, const TermWeights& first, double kept);
   void take_over();
   void serve();
@@ -111,7 +111,6 @@ class PosteriorAxis final : public ModelAxis {
   std::vector<double> prior_;  ///< the prior's mean of the first features; empty: 0
   AxisScaling scaling_;        ///< of the mixture
   bool has_scale_ = false;     ///< after the first solve
-  double mean_ = 0.0;          ///< of the targets at the last solve
   ValueRange certain_;         ///< of values that the terms were certain of then
   Mixture mixture_;            ///< in service
   KnownPlaces known_;          ///< the centres, for novelty

@@ -51,8 +51,7 @@ std::vector<MemberShare> Mixture::members() const {
   return list;
 }
 
-void Mixture::update(std::span<const double> z, double y, double t, std::size_t block) {
-  score(z, y, block);
+void Mixture::update(std::span<const double> z, double y, double t) {
   see(z, y);
   paper_.update(z, y, t);
   serve();
@@ -155,7 +154,7 @@ void Mixture::clear() {
   for (FunctionMix::Member& member : mix_.members) {
     member.function.clear();
   }
-  shares_ = MemberShares(kPosterior.first_shares);
+  begin_shares();
   seen_.clear();
   seen_terms_ = SeenTermRanges(mix_.members[kOfPosterior].function.kernel().terms());
   certain_ = {0.0, 0.0};
@@ -164,9 +163,18 @@ void Mixture::clear() {
 }
 
 void Mixture::expect_vehicle() {
-  shares_.resume_from(kPosterior.first_shares_of_known);
-  seen_terms_ = SeenTermRanges();
+  mix_.nominal.assign(mix_.members[kOfPosterior].function.kernel().terms(), 0.0);
+  begin_shares();
   serve();
+}
+
+void Mixture::begin_shares() {
+  shares_ = MemberShares(mix_.nominal.empty() ? kPosterior.first_shares
+                                              : kPosterior.first_shares_of_known);
+}
+
+void Mixture::assign_nominal(std::span<const double> weights) {
+  std::ranges::copy(weights, mix_.nominal.begin());
 }
 
 void Mixture::visit(Archive& archive) {

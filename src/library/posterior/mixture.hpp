@@ -28,7 +28,7 @@ namespace kelpie {
 /// Limits as of a Committee: terms stay within twice their ranges, disagreement of the members
 /// shrinks the value towards the mean, and each member stays within the targets seen (SeenRange).
 /// The targets' range is widened to what the terms are certain of, so that effects may meet which
-/// never met before.
+/// never met before. Beside a vehicle known beforehand, the members say what that vehicle leaves.
 ///
 /// Allocates in the constructor, and in move().
 class Mixture {
@@ -42,9 +42,11 @@ class Mixture {
 
   void limit(const Budget& budget) { paper_.limit(budget); }
 
-  /// Scores what the members said `block` samples before, or fewer, and lets the paper's learner
-  /// learn a sample.
-  void update(std::span<const double> z, double y, double t, std::size_t block);
+  /// Scores what the members said `block` samples before, or fewer, by a sample that no member has
+  /// learned yet. Requires trusted inputs.
+  void score(std::span<const double> z, double y, std::size_t block);
+  /// Lets the paper's learner learn a sample, and widens the limits.
+  void update(std::span<const double> z, double y, double t);
 
   /// Functions of a solve. `weights`: of the terms, the last number the bias; `certain`: the range
   /// of values that the terms are certain of.
@@ -52,6 +54,8 @@ class Mixture {
                         std::span<const double> weights, const ValueRange& certain);
   void assign_terms(std::span<const double> weights) { assign_linear(kOfTerms, weights); }
   void assign_mean(std::span<const double> weights) { assign_linear(kOfMean, weights); }
+  /// Weights of the terms of the vehicle known beforehand. Requires expect_vehicle() before.
+  void assign_nominal(std::span<const double> weights);
 
   /// Samples are in another scale from now on, `map` of the scale so far. Functions of a solve
   /// have to be assigned next, and then freeze() called.
@@ -66,9 +70,8 @@ class Mixture {
   /// Forgets all samples. Functions of a solve have to be assigned next, and then freeze() called.
   void clear();
 
-  /// The posterior begins with a vehicle known beforehand: the members that know the vehicle have
-  /// larger shares until errors are known, and terms have no range. Requires that nothing has been
-  /// learned yet.
+  /// Targets are what a vehicle known beforehand leaves: their mean has the largest share until
+  /// errors are known. Requires that nothing has been learned yet.
   void expect_vehicle();
 
   void visit(Archive& archive);  ///< core/archive.hpp; without functions of a solve
@@ -80,8 +83,8 @@ class Mixture {
  private:
   enum Place : std::size_t { kOfPosterior, kOfTerms, kOfPaper, kOfMean, kMembers };
 
-  void score(std::span<const double> z, double y, std::size_t block);
   void assign_linear(Place member, std::span<const double> weights);
+  void begin_shares();
   void see(std::span<const double> z, double y);
   void move_paper(const SampleMap& map);
   void limit();

@@ -157,35 +157,47 @@ void RowScreen::judge(const Features& features, const Posterior& live) {
     return;
   }
   double squares = 0.0, products = 0.0, last = 0.0;
-  for (std::size_t i = waits_since_; i < rows_.end(); ++i) {
-    if (rows_.state(i) == State::waits) {
-      features.first(rows_[i].x, phi_);
-      const double error = rows_[i].left - value(before_, phi_);
-      squares += error * error;
-      products += error * last;
-      last = error;
-    }
-  }
+  each_row(waits_since_, false, features, [&](double y, double /*trust*/) {
+    const double error = y - value(before_, phi_);
+    squares += error * error;
+    products += error * last;
+    last = error;
+  });
   release(products > kPosterior.coherence * squares ? State::due_rare : State::due);
   restarts_[kRestarts].end();  // no other vehicle
 }
 
-// How far rows contradict what is known. `all`: not only rows that wait. By the posteriors of the
-// terms, which are small.
+// Uses each row from the first on, or each that waits, with the row's terms in phi_ and its trust.
+template <typename Use>
+void RowScreen::each_row(std::size_t first, bool all, const Features& features, Use use) {
+  for (std::size_t i = first; i < rows_.end(); ++i) {
+    if (all || rows_.state(i) == State::waits) {
+      const RecentRows::Row row = rows_[i];
+      features.first(row.x, phi_);
+      use(row.left, features.trust(row.x));
+    }
+  }
+}
+
+// How far rows contradict what is known, by the posteriors of the terms, which are small. `all`:
+// not only rows that wait, and less their mean error, which may be the sensor's.
 double RowScreen::distance(std::size_t first, bool all, const Features& features,
                            const Posterior& live) {
   before_.assign_first(live);
   for (int i = 0; i < kPosterior.young_rounds; ++i) {
     settle(before_, features.groups());
   }
-  after_ = before_;
-  for (std::size_t i = first; i < rows_.end(); ++i) {
-    if (all || rows_.state(i) == State::waits) {
-      const RecentRows::Row row = rows_[i];
-      features.first(row.x, phi_);
-      after_.add(phi_, row.left, features.trust(row.x), Likelihood::gauss);
-    }
+  double offset = 0.0, weight = 0.0;
+  if (all) {
+    each_row(first, all, features, [&](double y, double trust) {
+      weight += trust;
+      offset += trust * (y - value(before_, phi_));
+    });
+    offset /= weight > 0.0 ? weight : 1.0;
   }
+  after_ = before_;
+  each_row(first, all, features,
+           [&](double y, double trust) { after_.add(phi_, y - offset, trust, Likelihood::gauss); });
   settle(after_, features.groups());
   return before_.distance(after_);
 }

@@ -32,7 +32,8 @@ namespace kelpie {
 /// - A Restart begins with each row that waits as the first, and 10, 20 and 40 s after the first
 ///   row of all, for garbage at the start surprises nobody. Where a restart wins, the live
 ///   posterior has to be forgotten, and the rows since the restart's begin are due; but where rows
-///   that waited do not contradict the vehicle known (a distance of 0.2), they are learned beside.
+///   that waited do not contradict the vehicle known (a distance of 0.2, of errors less their mean:
+///   an offset of a sensor is no other vehicle), they are learned beside.
 /// - After 36 s, rows that wait are due, whatever they are: garbage ends. Where the terms of the
 ///   restart explain no more than the mean, after 144 s.
 ///
@@ -89,6 +90,8 @@ class RowScreen {
   void limit_waiting(const Features& features, const Posterior& live);
   void judge(const Features& features, const Posterior& live);
   double distance(std::size_t first, bool all, const Features& features, const Posterior& live);
+  template <typename Use>
+  void each_row(std::size_t first, bool all, const Features& features, Use use);
   void release(State state);
 
   RecentRows rows_;

@@ -33,7 +33,7 @@ inline constexpr struct PosteriorTuning {
   double novelty = 0.02;  ///< squared left-over norm of a new centre; as above
   /// Shares of posterior, terms, svr and mean before the first losses; by hand.
   std::array<double, 4> first_shares{0.3, 0.4, 0.15, 0.15};
-  std::array<double, 4> first_shares_of_known{0.45, 0.45, 0.05, 0.05};  ///< likewise
+  std::array<double, 4> first_shares_of_known{0.1, 0.1, 0.1, 0.7};  ///< likewise
   double certain = 3.0;          ///< standard errors of an effect; chosen on lab/random_vehicles.py
   double block = 2.0;            ///< independent samples of a block of losses; by hand
   int buffer_per_centre = 3;     ///< samples of the setting `buffer`; by hand

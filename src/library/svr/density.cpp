@@ -65,10 +65,11 @@ double KernelDensity::novelty(std::span<const double> z, const SampleStore& samp
   if (own < kEmptyDensity) {
     return 1.0;
   }
+  const double denser_than = own * (1.0 + kRounding);
   std::size_t denser = 0;
   // sum_ holds everyone's κ = 1 with themselves, which doesn't count.
   for_each_kappa(
-      [&](std::size_t j, double kappa) { denser += sum_[j] - 1.0 + kappa > own ? 1 : 0; });
+      [&](std::size_t j, double kappa) { denser += sum_[j] - 1.0 + kappa > denser_than ? 1 : 0; });
   return static_cast<double>(denser) / static_cast<double>(size_);
 }
 

@@ -17,6 +17,7 @@ class KernelDensity {
  public:
   /// Sums of kernel values below this limit are rounding: no sample within six bandwidths.
   static constexpr double kEmptyDensity = 1e-9;
+  static constexpr double kRounding = 1e-6;  ///< by which places are as dense, at least
 
   /// `bandwidth` h > 0, in standard deviations of the inputs.
   KernelDensity(std::size_t dimension, std::size_t capacity, double bandwidth);

@@ -164,15 +164,18 @@ double mixed_value_with_gradient(std::span<const WeightedFunction> functions, co
 }
 
 double FunctionMix::operator()(std::span<const double> x) const {
-  return value_of(members, limits, term_ranges, x);
+  return value_of(members, limits, term_ranges, x) +
+         dot(std::span<const double>(nominal), x.last(nominal.size()));
 }
 
 double FunctionMix::with_gradient(std::span<const double> x, std::span<double> gradient) const {
-  return value_and_gradient(members, limits, term_ranges, x, gradient);
+  const double value = value_and_gradient(members, limits, term_ranges, x, gradient);
+  add_scaled(1.0, std::span<const double>(nominal), gradient.last(nominal.size()));
+  return value + dot(std::span<const double>(nominal), x.last(nominal.size()));
 }
 
 double FunctionMix::term_weight(std::size_t k) const {
-  double sum = 0.0;
+  double sum = nominal.empty() ? 0.0 : nominal[k];
   for (const Member& member : members) {
     sum += member.share * member.function.term_weights()[k];
   }

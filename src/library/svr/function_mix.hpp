@@ -59,7 +59,8 @@ double mixed_value_with_gradient(std::span<const WeightedFunction> functions, co
                                  std::span<const ValueRange> ranges, std::span<const double> x,
                                  std::span<double> gradient);
 
-/// A weighted mean of functions, with copies of the functions.
+/// A weighted mean of functions, with copies of the functions, beside the physics terms of a
+/// vehicle known beforehand: the functions then say what that vehicle leaves.
 struct FunctionMix {
   /// A function with name and weight.
   struct Member {
@@ -71,9 +72,10 @@ struct FunctionMix {
   std::vector<Member> members;
   Limits limits{};
   std::vector<ValueRange> term_ranges{};  ///< one per physics term; empty: unlimited
+  std::vector<double> nominal{};  ///< weights of the vehicle known, one per term; empty: none
 
-  double operator()(std::span<const double> x) const;  ///< mixed_value()
-  /// mixed_value_with_gradient()
+  double operator()(std::span<const double> x) const;  ///< mixed_value(), and the vehicle known
+  /// mixed_value_with_gradient(), and the vehicle known
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
   /// The range of a physics term.
@@ -81,7 +83,7 @@ struct FunctionMix {
     return term_ranges.empty() ? ValueRange{} : term_ranges[k];
   }
 
-  /// The weight of a physics term inside limits and range: Σ share_k w_k.
+  /// The weight of a physics term inside limits and range: Σ share_k w_k, and of the vehicle known.
   double term_weight(std::size_t k) const;
 };
 

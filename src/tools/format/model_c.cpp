@@ -452,22 +452,30 @@ class ModelCode {
       ranges += fmt::format("{}{{{}, {}}}", k > 0 ? ", " : "", text_.bound(low * term_scale[k]),
                             text_.bound(high * term_scale[k]));
     }
+    const std::vector<double> nominal = axis.function.nominal.empty()
+                                            ? std::vector<double>(term_scale.size())
+                                            : in_units(axis.scaling, axis.function.nominal);
     return fmt::format("  {{ {}, {}, {}, {}, {}, {},\n   {},\n   {{{}}}{} }},\n", first,
                        first + axis.function.members.size(), text_.bound(target.invert(limits.low)),
                        text_.bound(target.invert(limits.high)), text_.number(limits.caution),
                        text_.number(target.scale * target.scale), text_.list(input.mean), rows,
-                       ranges.empty() ? "" : ",\n   {" + ranges + "}");
+                       ranges.empty() ? "" : ",\n   {" + ranges + "},\n   " + text_.list(nominal));
+  }
+
+  // Coefficients in physical units, of weights of scaled terms.
+  static std::vector<double> in_units(const AxisScaling& scaling, std::span<const double> weights) {
+    std::vector<double> coefficients(weights.begin(), weights.end());
+    for (std::size_t k = 0; k < coefficients.size(); ++k) {
+      coefficients[k] *= scaling.target.scale / scaling.term_scale[k];
+    }
+    return coefficients;
   }
 
   std::string member_entry(const AxisScaling& scaling, const FunctionMix::Member& member,
                            std::size_t first) const {
     const SvrFunction& function = member.function;
     const KernelWeights& weights = function.kernel().weights();
-    std::vector<double> coefficients;
-    for (std::size_t k = 0; k < scaling.term_scale.size(); ++k) {
-      coefficients.push_back(scaling.target.scale * function.term_weights()[k] /
-                             scaling.term_scale[k]);
-    }
+    const std::vector<double> coefficients = in_units(scaling, function.term_weights());
     return fmt::format("  /* {} */\n  {{ {}, {}, {}, {}, {}, {}, {}{} }},\n", c_string(member.name),
                        text_.number(member.share), first, first + function.beta().size(),
                        text_.number(function.kernel().local().gamma()), text_.number(weights.s),
@@ -504,7 +512,7 @@ std::size_t table_bytes(const TrainedModel& model, const CodeOptions& options) {
   bytes +=
       model.alignment.actuators.size() * (sizeof(std::int32_t) + Actuator::fields().size() * real);
   for (const TrainedModel::Axis& axis : model.axes) {
-    bytes += kIntegers + (4 + inputs + inputs * inputs + 2 * model.terms.size()) * real;
+    bytes += kIntegers + (4 + inputs + inputs * inputs + 3 * model.terms.size()) * real;
     for (const FunctionMix::Member& member : axis.function.members) {
       bytes += kIntegers + (5 + model.terms.size()) * real;
       bytes += member.function.beta().size() * (inputs + 1) * real;

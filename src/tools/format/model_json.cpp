@@ -88,6 +88,7 @@ Json axis_json(const TrainedModel::Axis& axis) {
           {"bounds", range_json({limits.low, limits.high})},
           {"caution", limits.caution},
           {"term_ranges", file::list(axis.function.term_ranges, range_json)},
+          {"nominal", numbers(axis.function.nominal)},
           {"members", file::list(axis.function.members, member_json)}};
 }
 

@@ -77,12 +77,12 @@ TEST(MemberShares, AMemberThatHasLearnedIsBelievedSoon) {
   EXPECT_GT(shares.shares()[0], 0.7);
 }
 
-// One absurd sample counts as three standard deviations, whatever it is.
+// One absurd sample counts as ten standard deviations, whatever it is.
 TEST(MemberShares, WhatIsNoNumberIsNoBetterThanTheWorst) {
   MemberShares shares(kAlike);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  score(shares, {nan, infinity, 3.0}, 20);
+  score(shares, {nan, infinity, 10.0}, 20);
   for (const double share : shares.shares()) {
     EXPECT_DOUBLE_EQ(share, 1.0 / 3.0);
   }

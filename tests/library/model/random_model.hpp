@@ -128,6 +128,7 @@ inline TrainedModel random_model(RandomStream& random, const ModelShape& shape) 
     for (std::size_t k = 0; k < terms; ++k) {
       mix.term_ranges.push_back(
           {.low = -random.uniform(0.1, 1.0), .high = random.uniform(0.1, 1.0)});
+      mix.nominal.push_back(0.3 * random.normal());
     }
     model.axes.push_back({target, random_scaling(random, shape, terms), std::move(mix), 1e-4, {}});
   }

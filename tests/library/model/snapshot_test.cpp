@@ -51,13 +51,18 @@ Slopes by_formula(const SvrFunction& function, const std::array<Slopes, 3>& z,
   return sum;
 }
 
-// Scaled, and within their ranges.
+Slopes scaled_term(const TrainedModel::Axis& axis, const std::array<Slopes, 3>& raw,
+                   std::size_t k) {
+  return testing::every_function(raw[0], raw[1], raw[2])[k] / axis.scaling.term_scale[k];
+}
+
+// Within their ranges.
 std::vector<Slopes> terms_of(const TrainedModel::Axis& axis, const std::array<Slopes, 3>& raw) {
   const std::vector<double>& term_scale = axis.scaling.term_scale;
   std::vector<Slopes> terms;
   for (std::size_t k = 0; k < term_scale.size(); ++k) {
     const auto [low, high] = axis.function.term_ranges[k];
-    const Slopes free = testing::every_function(raw[0], raw[1], raw[2])[k] / term_scale[k];
+    const Slopes free = scaled_term(axis, raw, k);
     const bool inside = free.value() > low && free.value() < high;
     terms.push_back(inside ? free
                            : Slopes(std::clamp(free.value(), low, high), Eigen::Vector3d::Zero()));
@@ -116,7 +121,10 @@ Slopes by_automatic_differentiation(const TrainedModel::Axis& axis, const std::v
                             : Slopes(std::clamp(free.value(), limits.low, limits.high),
                                      Eigen::Vector3d::Zero()));
   }
-  const Slopes total = with_caution(axis.function, values);
+  Slopes total = with_caution(axis.function, values);
+  for (std::size_t k = 0; k < axis.function.nominal.size(); ++k) {
+    total += axis.function.nominal[k] * scaled_term(axis, raw, k);
+  }
   return axis.scaling.target.mean + axis.scaling.target.scale * total;
 }
 

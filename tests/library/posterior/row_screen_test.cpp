@@ -85,6 +85,7 @@ TEST(RowScreen, LearnsALoneOutlierByItsError) {
   EXPECT_NEAR(stream.live.weights()[1], 2.0, 0.01);
 }
 
+// The command does the opposite, five times as much.
 TEST(RowScreen, TakesUpWhatNeverEnds) {
   Stream stream;
   for (int i = 0; i < 400; ++i) {
@@ -92,13 +93,27 @@ TEST(RowScreen, TakesUpWhatNeverEnds) {
   }
   bool won = false;
   for (int i = 0; i < 160 && !won; ++i) {
-    stream.add(5.0);
+    const double command = (i % 2 == 0 ? 1.0 : -1.0) + 0.1 * stream.random.normal();
+    stream.add(6.0 * command, 0.25, command);
     won = stream.screen.won().has_value();
   }
   ASSERT_TRUE(won);
   EXPECT_TRUE(stream.screen.won()->is_change);
   EXPECT_DOUBLE_EQ(stream.screen.won()->since_s, 100.0);
   EXPECT_EQ(stream.learned_s.size(), 400U + static_cast<std::size_t>((stream.t - 100.0) / 0.25));
+}
+
+TEST(RowScreen, AnOffsetIsLearnedWithoutForgetting) {
+  Stream stream;
+  for (int i = 0; i < 400; ++i) {
+    stream.add(0.0);
+  }
+  for (int i = 0; i < 400; ++i) {
+    stream.add(5.0);
+    EXPECT_FALSE(stream.screen.won()) << i;
+    EXPECT_EQ(stream.screen.dropped(), 0) << i;
+  }
+  EXPECT_EQ(stream.learned_s.size(), 800U);
 }
 
 // A thruster runs for the first time, and the model is far off: the restart is better for longer

@@ -101,7 +101,7 @@ TEST_F(Export, WritesALibraryWithABlockAndRefusesWhatItCannot) {
       testing::succeeded(run("export out/model.json --live twin.so --header twin.h --name twin"));
   EXPECT_NE(outcome.out.find("library: twin.so"), std::string::npos);
   EXPECT_NE(outcome.out.find("external(\"twin\", \"./twin.so\")"), std::string::npos);
-  EXPECT_EQ(content("twin.block").substr(0, 8), "blkelk03");
+  EXPECT_EQ(content("twin.block").substr(0, 8), "blkelk04");
   EXPECT_NE(content("twin.h").find("unsigned long long twin_renew(void);"), std::string::npos);
   EXPECT_EQ(content("twin.so").substr(1, 3), "ELF");
   testing::expect_refused(run("export out/model.json --live a.so --float"),
