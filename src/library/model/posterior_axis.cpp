@@ -82,6 +82,7 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
           past_.update(phi, row.left, t, features_.trust(x), posterior_)) {
     recall(*back, decision);
   }
+  const bool was_on_probation = screen_.on_probation() != nullptr;
   screen_.add(row, features_, phi, posterior_);
   if (const std::optional<RowScreen::Won> won = screen_.won()) {
     won->is_change ? past_.leave(posterior_, won->since_s, features_.groups()) : past_.begin();
@@ -97,6 +98,9 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
   }
   if (posterior_.wants_solve() && posterior_.solve(features_.groups(), budget_)) {
     take_over();
+    decision.published = true;
+  } else if (has_scale_ && (was_on_probation || screen_.on_probation() != nullptr)) {
+    assign_members();
     decision.published = true;
   }
   decision.verdict = screen_.last_waits() ? Verdict::held_back : Verdict::accepted;
@@ -290,6 +294,18 @@ void PosteriorAxis::serve() {
   assign_members();
 }
 
+// From the weights of the terms alone to those of rows on probation.
+PosteriorAxis::TermWeights PosteriorAxis::step_on_probation() const {
+  TermWeights step(features_.terms_end());
+  std::ranges::fill(step, 0.0);
+  if (const Posterior* const follower = screen_.on_probation()) {
+    std::ranges::transform(follower->weights(), posterior_.first_weights(), step.begin(),
+                           std::minus<>{});
+    step[0] += follower->centre() - posterior_.centre();
+  }
+  return step;
+}
+
 // The posterior's mean as a function of scaled kernels and terms.
 void PosteriorAxis::assign_members() {
   const std::span<const double> theta = posterior_.weights();
@@ -299,20 +315,22 @@ void PosteriorAxis::assign_members() {
                          [&](double weight) { return weight / scaling_.target.scale; });
   features_.basis().to_kernel(scratch_);
   const double centre = posterior_.centre();
-  const auto scaled = [&](std::span<const double> weights, double bias) {
-    TermWeights copy(weights.size());
-    std::ranges::copy(weights, copy.begin());
-    return in_scale(copy, bias);
+  const TermWeights step = step_on_probation();
+  const auto scaled = [&](std::span<const double> weights) {
+    TermWeights stepped(weights.size());
+    std::ranges::transform(weights, step, stepped.begin(), std::plus<>{});
+    return in_scale(stepped, in_scale(centre + stepped[0]));
   };
-  const auto own = scaled(theta.first(first), in_scale(centre + theta[0]));
+  const auto own = scaled(theta.first(first));
   mixture_.assign_posterior(features_.basis().centres(), scratch_, as_span(own),
                             {in_scale(certain_.low), in_scale(certain_.high)});
-  const std::span<const double> alone = posterior_.first_weights();
-  mixture_.assign_terms(as_span(scaled(alone, in_scale(centre + alone[0]))));
+  mixture_.assign_terms(as_span(scaled(posterior_.first_weights())));
   const double mean = in_scale(centre);
   mixture_.assign_mean({&mean, 1});
   if (!prior_.empty()) {
-    mixture_.assign_nominal(as_span(scaled(prior_, 0.0)).first(first - 1));
+    TermWeights nominal(first);
+    std::ranges::copy(prior_, nominal.begin());
+    mixture_.assign_nominal(as_span(in_scale(nominal, 0.0)).first(first - 1));
   }
 }
 

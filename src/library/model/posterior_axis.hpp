@@ -100,6 +100,7 @@ class PosteriorAxis final : public ModelAxis {
   void take_over();
   void serve();
   void assign_members();
+  TermWeights step_on_probation() const;
   ValueRange certain_range();
   std::size_t block_length() const;
   void know_centres();

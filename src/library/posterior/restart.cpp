@@ -9,8 +9,8 @@
 
 namespace kelpie {
 
-Restart::Restart(std::size_t terms, double enough)
-    : terms_(terms), young_(terms, terms), evidence_(enough) {
+Restart::Restart(std::size_t terms, double enough, double ahead_s)
+    : terms_(terms), ahead_s_(ahead_s), young_(terms, terms), evidence_(enough) {
   scored_weights_.reserve(terms);
   next_weights_.reserve(terms);
 }
@@ -25,6 +25,14 @@ void Restart::begin(std::size_t row, double t, double until_s) {
   next_weights_.clear();
   kept_s_ = t;
   forget_evidence();
+}
+
+void Restart::begin_from(const Posterior& live, double kept, double t,
+                         std::span<const std::uint8_t> group) {
+  begin(0, t, t);
+  young_.assign_first(live);
+  young_.tell_anew({}, {}, kept);
+  settle(young_, group);
 }
 
 void Restart::update(std::span<const double> phi, double y, double t, double trust,
@@ -48,7 +56,7 @@ void Restart::update(std::span<const double> phi, double y, double t, double tru
 }
 
 void Restart::keep_weights(double t) {
-  if (!young_.ready() || t - kept_s_ < kPosterior.ahead_s) {
+  if (!young_.ready() || t - kept_s_ < ahead_s_) {
     return;
   }
   kept_s_ = t;

@@ -14,15 +14,18 @@
 namespace kelpie {
 
 /// A posterior of the terms alone that learns the rows since a later row, against the live
-/// posterior of all rows (Evidence). The restart's errors are those of its weights 2 s ago or more,
-/// for neighbouring rows resemble each other. Allocates in the constructor only.
+/// posterior of all rows (Evidence). The restart's errors are those of weights of some age, for
+/// neighbouring rows resemble each other. Allocates in the constructor only.
 class Restart {
  public:
-  /// `enough`: evidence of a restart that wins [nat].
-  Restart(std::size_t terms, double enough);
+  /// `enough`: evidence of a restart that wins [nat]; `ahead_s`: least age of weights [s].
+  Restart(std::size_t terms, double enough, double ahead_s = kPosterior.ahead_s);
 
   /// Begins with the row of this number, at the time t; not an alternative any more at `until_s`.
   void begin(std::size_t row, double t, double until_s);
+  /// Begins with what `live` knows by the terms, which weighs as `kept` independent samples.
+  void begin_from(const Posterior& live, double kept, double t,
+                  std::span<const std::uint8_t> group);
   void end() { until_s_ = begin_s_; }
 
   void live_until(double until_s) { until_s_ = until_s; }  ///< Of a restart that runs.
@@ -42,6 +45,8 @@ class Restart {
   bool wins(double t, double learned_s) const;
 
   bool leads() const { return evidence_.leads(); }  ///< Evidence is left.
+  bool is_better() const { return evidence_.is_clear(); }
+  const Posterior& young() const { return young_; }
   /// Whether errors are smaller than those of the mean of the targets, as garbage's are not.
   bool explains() const { return explained_ > kPosterior.explained * scored_; }
 
@@ -57,8 +62,9 @@ class Restart {
   void keep_weights(double t);
 
   std::size_t terms_;
+  double ahead_s_;
   Posterior young_;
-  RoomyVector<double> scored_weights_, next_weights_;  ///< 2 s ago or more, and later
+  RoomyVector<double> scored_weights_, next_weights_;  ///< of that age or more, and later
   double kept_s_ = 0.0;                                ///< time of the latter [s]
   std::size_t row_ = 0;
   double begin_s_ = 0.0, until_s_ = 0.0;  ///< [s]

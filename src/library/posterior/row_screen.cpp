@@ -19,6 +19,7 @@ RowScreen::RowScreen(std::size_t inputs, std::size_t terms)
     : rows_(inputs, kRows),
       restarts_{Restart(terms, kPosterior.nats_at_start), Restart(terms, kPosterior.nats_at_start),
                 Restart(terms, kPosterior.nats_at_start), Restart(terms, kPosterior.nats)},
+      follower_(terms, kPosterior.nats_on_probation, kPosterior.ahead_on_probation_s),
       before_(terms, terms),
       after_(terms, terms),
       phi_(terms) {}
@@ -48,6 +49,9 @@ void RowScreen::add(const RecentRows::Row& row, const Features& features,
   }
   learned_s_ += last_waits_ ? 0.0 : step;
   begin_restarts(row.t);
+  if (last_waits_ && !waiting()) {
+    follower_.begin_from(live, kPosterior.kept_on_probation, row.t, features.groups());
+  }
   if (last_waits_) {
     waits_s_ = waiting() ? waits_s_ : row.t;
     waited_s_ = row.t;
@@ -55,6 +59,10 @@ void RowScreen::add(const RecentRows::Row& row, const Features& features,
   const bool waits = waiting() || last_waits_;
   rows_.push(row, last_waits_ ? State::waits : State::due);
   waits_since_ = !waits ? rows_.end() : std::min(waits_since_, rows_.end() - 1);
+  if (waits) {
+    follower_.update(phi, row.left, row.t, features.trust(row.x), live, live.rows_per_sample(),
+                     features.groups());
+  }
   run_restarts(row, features, phi, live);
   limit_waiting(features, live);
 }
@@ -252,10 +260,11 @@ void RowScreen::visit(Archive& archive) {
   for (Restart& one : restarts_) {
     archive.part("restart", one);
   }
+  archive.part("follower", follower_);
 }
 
 std::size_t RowScreen::bytes(std::size_t inputs, std::size_t terms) {
-  return RecentRows::bytes(inputs, kRows) + (kRestarts + 1) * Restart::bytes(terms) +
+  return RecentRows::bytes(inputs, kRows) + (kRestarts + 2) * Restart::bytes(terms) +
          2 * Posterior::bytes(terms, terms) + terms * sizeof(double);
 }
 

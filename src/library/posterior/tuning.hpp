@@ -58,6 +58,9 @@ inline constexpr struct PosteriorTuning {
   double first_restart_s = 10.0, restart_s = 20.0;  ///< [s]; by hand
   double ahead_s = 2.0;                      ///< least age of weights that are scored [s]; by hand
   double nats = 14.0, nats_at_start = 20.0;  ///< of a restart that wins; lab/random_vehicles.py
+  double nats_on_probation = 3.0;            ///< of rows that wait; by hand
+  double kept_on_probation = 10.0;           ///< independent samples of before; by hand
+  double ahead_on_probation_s = 0.5;         ///< least age of weights that are scored [s]
   double nats_per_row = 0.7;                 ///< likewise; by hand
   double most_ratio = 2.0;                   ///< logarithm of a ratio of errors; by hand
   double least_error = 0.02;     ///< square of an error, in variances of the noise; by hand
