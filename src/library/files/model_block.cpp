@@ -155,9 +155,7 @@ void put_targets(std::span<const Snapshot> snapshots, NumberWriter& out) {
       out.put(high * term_scale[k]);
     }
     for (std::size_t k = 0; k < term_scale.size(); ++k) {
-      out.put(axis.function.nominal.empty()
-                  ? 0.0
-                  : target.scale * axis.function.nominal[k] / term_scale[k]);
+      out.put(target.scale * axis.function.nominal_weight(k) / term_scale[k]);
     }
   }
 }

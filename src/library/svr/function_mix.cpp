@@ -175,7 +175,7 @@ double FunctionMix::with_gradient(std::span<const double> x, std::span<double> g
 }
 
 double FunctionMix::term_weight(std::size_t k) const {
-  double sum = nominal.empty() ? 0.0 : nominal[k];
+  double sum = nominal_weight(k);
   for (const Member& member : members) {
     sum += member.share * member.function.term_weights()[k];
   }

@@ -83,6 +83,9 @@ struct FunctionMix {
     return term_ranges.empty() ? ValueRange{} : term_ranges[k];
   }
 
+  /// The weight of a physics term of the vehicle known.
+  double nominal_weight(std::size_t k) const { return nominal.empty() ? 0.0 : nominal[k]; }
+
   /// The weight of a physics term inside limits and range: Σ share_k w_k, and of the vehicle known.
   double term_weight(std::size_t k) const;
 };

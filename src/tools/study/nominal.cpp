@@ -103,24 +103,29 @@ class VehicleOnInputs {
   std::vector<std::optional<std::size_t>> inputs_;  // of each thruster
 };
 
-const SvrFunction& line_of(const Snapshot& axis, std::string_view option) {
-  const auto found = std::ranges::find(axis.function.members, "line", &FunctionMix::Member::name);
+// The member of the terms alone: 'line' in models of version 1.
+const SvrFunction& terms_of(const Snapshot& axis, std::string_view option) {
+  const auto found = std::ranges::find_if(
+      axis.function.members,
+      [](const FunctionMix::Member& one) { return one.name == "terms" || one.name == "line"; });
   require(found != axis.function.members.end(), option,
-          "the model has no member 'line', as a model of learner = svr");
+          "the model has no member 'terms', as a model of learner = svr");
   return found->function;
 }
 
 std::vector<Coefficient> coefficients_of(const TrainedModel& model, const Snapshot& axis,
                                          const TermSet& terms, std::string_view option) {
-  const SvrFunction& line = line_of(axis, option);
+  const SvrFunction& line = terms_of(axis, option);
   const AxisScaling& scaling = axis.scaling;
   const std::vector<std::string> known = terms.texts();
   std::vector<Coefficient> list{
       {kConstant, scaling.target.scale * line.bias() + scaling.target.mean}};
   for (std::size_t k = 0; k < model.terms.size(); ++k) {
     if (std::ranges::find(known, model.terms.text(k)) != known.end()) {
-      list.push_back({model.terms.text(k),
-                      scaling.target.scale * line.term_weights()[k] / scaling.term_scale[k]});
+      list.push_back(
+          {model.terms.text(k), scaling.target.scale *
+                                    (line.term_weights()[k] + axis.function.nominal_weight(k)) /
+                                    scaling.term_scale[k]});
     }
   }
   return list;

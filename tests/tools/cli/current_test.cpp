@@ -37,8 +37,7 @@ class CurrentOfALog : public testing::CommandTest {
   void SetUp() override { write("log.csv", text_of(Log(Log::wandering, 1800), "psi")); }
 
   Outcome learn(const std::string& options, const std::string& out) {
-    return testing::succeeded(
-        run("learn log.csv --split blocks " + options + testing::kFewSamples + " --out " + out));
+    return testing::succeeded(run("learn log.csv --split blocks " + options + " --out " + out));
   }
 
   nlohmann::json json(const std::string& file) { return nlohmann::json::parse(content(file)); }

@@ -22,10 +22,10 @@
 
 /* Two members: the first with one support vector at z = (1, 0), the second of terms alone. */
 static const struct kelpie_axis axes[] = {{0, 2, -10, 10, 0, 1, {1, 0}, {{2, 0}, {1, 0.5}},
-                                           {{-99, 99}, {-99, 99}, {-99, 99}, {-99, 99}}}};
+                                           {{-99, 99}, {-99, 99}, {-99, 99}, {-99, 99}}, {0, 0, 0, 0}}};
 /* The same without limits, with terms that end at -0.25 (from below), at 1 and at 0. */
 static const struct kelpie_axis narrow[] = {{0, 2, -999, 999, 0, 1, {1, 0}, {{2, 0}, {1, 0.5}},
-                                             {{-99, 99}, {-0.25, 99}, {-99, 1}, {0, 99}}}};
+                                             {{-99, 99}, {-0.25, 99}, {-99, 1}, {0, 99}}, {0, 0, 0, 0}}};
 static const struct kelpie_member members[] = {
     {0.75, 0, 1, 0.5, 1, 0.25, 3, {0, 0, 0, 0}},
     {0.25, 1, 1, 0.5, 1, 0, 0, {1, 10, 100, 1000}},
@@ -51,7 +51,7 @@ static const short ends[] = {9, 15, 17, 24};
 static const short slopes[][2] = {{0, 0}, {0, 1}, {1, 1}, {2, 0}, {3, 0}};
 /* Three members that disagree. */
 static const struct kelpie_axis doubtful[] = {{0, 3, -10, 10, 2, 9, {1, 0}, {{2, 0}, {1, 0.5}},
-                                               {{-99, 99}, {-99, 99}, {-99, 99}, {-99, 99}}}};
+                                               {{-99, 99}, {-99, 99}, {-99, 99}, {-99, 99}}, {0, 0, 0, 0}}};
 static const struct kelpie_member opinions[] = {
     {0.5, 0, 1, 0.5, 1, 0.25, 3, {0, 0, 0, 0}},
     {0.25, 1, 1, 0.5, 1, 0, 1, {0, 0, 0, 0}},
