@@ -103,10 +103,14 @@ class VehicleOnInputs {
   std::vector<std::optional<std::size_t>> inputs_;  // of each thruster
 };
 
+// The member without a kernel: of models of kelpie 1.x `line`.
 const SvrFunction& line_of(const Snapshot& axis, std::string_view option) {
-  const auto found = std::ranges::find(axis.function.members, "line", &FunctionMix::Member::name);
+  const auto found =
+      std::ranges::find_if(axis.function.members, [](const FunctionMix::Member& member) {
+        return member.name == "terms" || member.name == "line";
+      });
   require(found != axis.function.members.end(), option,
-          "the model has no member 'line', as a model of learner = svr");
+          "the model has no member 'terms', as a model of learner = svr");
   return found->function;
 }
 
