@@ -13,22 +13,28 @@
 #include "kelpie/motion/term_set.hpp"
 #include "lab/sparse_online_svr.hpp"
 #include "model/axis_list.hpp"
-#include "model/guarded_axis.hpp"
+#include "model/first_scale.hpp"
+#include "model/model_axis.hpp"
 
 namespace kelpie::lab {
 namespace {
 
 // SOSVR wants scaled samples, and stays in the scale that it began with.
-class ScaledSosvr final : public Scaled {
+class ScaledSosvr final : public OnlineRegressor {
  public:
   ScaledSosvr(std::size_t inputs, const SparseOnlineSvrSettings& settings,
               std::optional<AxisScaling> scaling)
-      : Scaled(inputs, SharedSettings{}, {}, std::move(scaling)), learner_(inputs, settings) {}
+      : scale_(inputs, SharedSettings{}, {}, std::move(scaling)), learner_(inputs, settings) {}
+
+  Decision update(std::span<const double> x, double y, double t) override {
+    return scale_.update(learner_, x, y, t);
+  }
+  void learn_held_back() override { scale_.learn_held_back(learner_); }
+  double predict(std::span<const double> x) const override { return scale_.predict(learner_, x); }
+  Status status() const override { return scale_.status(learner_); }
 
  private:
-  SparseOnlineSvr& learner() override { return learner_; }
-  const SparseOnlineSvr& learner() const override { return learner_; }
-
+  FirstScale scale_;
   SparseOnlineSvr learner_;
 };
 
@@ -48,8 +54,8 @@ std::unique_ptr<OnlineRegressor> online_svr(const log::Dataset& data, std::size_
                                             std::optional<AxisScaling> scaling) {
   const TermSet terms =
       TermSet::from(settings.shared.terms, data.input_names, settings.axes.size());
-  return std::make_unique<GuardedAxis>(data.input_names.size(), settings.shared,
-                                       settings.axes.at(axis), terms, std::move(scaling));
+  return make_axis(data.input_names.size(), settings.shared, settings.axes.at(axis), terms, {},
+                   std::move(scaling));
 }
 
 SparseOnlineSvrSettings sosvr_settings(int dictionary, const NamedValues& values) {
@@ -112,7 +118,6 @@ const NamedValues kTerms{{"terms", "fossen"}, {"lambda", "0.5"}};
 const NamedValues kFine{{"fine", "0.7"}};
 const NamedValues kOutlier{{"outlier", "robust"}};
 const NamedValues kAge{{"forget", "age"}};
-const NamedValues kChallenger{{"adapt", "challenger"}, {"memory", "4"}};
 
 // A row of the paper's learner with these settings over the values found.
 Row paper_row(const char* key, RowKind kind, const char* name,
@@ -155,10 +160,12 @@ Contender online_svr_contender(std::string key, std::string name, const ModelSet
 Contender model_contender(std::string key, std::string name, const ModelSettings& settings) {
   return {std::move(key), std::move(name), text_of(settings),
           [settings](const log::Dataset& data, std::span<const AxisScaling> scales) {
-            return scales.empty() ? std::make_unique<DynamicsModel>(data.input_names,
-                                                                    data.target_names, settings)
-                                  : std::make_unique<DynamicsModel>(
-                                        data.input_names, data.target_names, settings, scales);
+            const bool takes_scales = settings.shared.learner == LearnerKind::svr;
+            return scales.empty() || !takes_scales
+                       ? std::make_unique<DynamicsModel>(data.input_names, data.target_names,
+                                                         settings)
+                       : std::make_unique<DynamicsModel>(data.input_names, data.target_names,
+                                                         settings, scales);
           },
           settings.shared};
 }
@@ -212,8 +219,7 @@ const std::vector<Row>& reproduction_rows() {
       paper_row("fine", addition, "paper + fine kernel", {kFine}),
       paper_row("outlier", addition, "paper + robust outlier rule", {kOutlier}),
       paper_row("age", addition, "paper + true age", {kAge}),
-      paper_row("challenger", addition, "paper + challenger", {kChallenger}),
-      paper_row("five", addition, "paper + all five", {kTerms, kFine, kOutlier, kAge, kChallenger}),
+      paper_row("four", addition, "paper + all four", {kTerms, kFine, kOutlier, kAge}),
       {"svr",
        addition,
        "kelpie's learner of one axis",
@@ -269,8 +275,7 @@ std::vector<Contender> peer_contenders() {
                                                         {"k", "3"},
                                                         {"anchors", "50"}});
   return {online_svr_contender("svr", "learner of one axis", ours),
-          online_svr_contender("fifo", "FIFO, same settings",
-                               with(ours, {{"forget", "fifo"}, {"adapt", "none"}})),
+          online_svr_contender("fifo", "FIFO, same settings", with(ours, {{"forget", "fifo"}})),
           model_contender("default", "kelpie's default", ModelSettings::from_preset("default", 1)),
           sosvr_contender(SparseOnlineSvrSettings{}.dictionary), rls_contender("rls", 0.999)};
 }

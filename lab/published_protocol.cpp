@@ -94,7 +94,7 @@ std::vector<Contender> published_contenders(std::size_t axes) {
   using Values = std::initializer_list<std::pair<const char*, const char*>>;
   ModelSettings base = ModelSettings::from_preset("default", axes);
   base.assign("buffer", std::to_string(kPublishedBuffer));
-  // The protocol compares what learners make of a hundred samples; a committee remembers more.
+  // The protocol compares what learners make of a hundred samples; the posterior remembers more.
   const auto settings = [&base](Values first, Values then = {}) {
     ModelSettings model = base;
     model.assign("learner", "svr");
@@ -106,7 +106,7 @@ std::vector<Contender> published_contenders(std::size_t axes) {
     }
     return model;
   };
-  const Values plain{{"terms", "none"}, {"fine", "0"}, {"lambda", "0"}, {"adapt", "none"}};
+  const Values plain{{"terms", "none"}, {"fine", "0"}, {"lambda", "0"}};
   const ModelSettings ours = settings(plain, {{"gamma", "0.00838"},
                                               {"c", "91.6"},
                                               {"epsilon", "0.213"},

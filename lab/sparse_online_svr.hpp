@@ -16,8 +16,8 @@
 
 namespace kelpie::lab {
 
-/// For standardised inputs and targets (model/scaled.hpp): ε and C are in standard deviations of
-/// the target.
+/// For standardised inputs and targets (model/first_scale.hpp): ε and C are in standard deviations
+/// of the target.
 struct SparseOnlineSvrSettings {
   int dictionary = 300;          ///< samples kept at most
   double threshold = 1e-3;       ///< η: independence above which a sample enters

@@ -160,7 +160,6 @@ c = 10.0
 terms = "u*|u|; n*|n|; u"
 forget = "age"
 coverage = 0.9
-track = 3.0
 
 [log]
 time = "t"

@@ -38,7 +38,7 @@ typedef enum kelpie_status {
  *  next failed call of this thread. */
 const char* kelpie_last_error(void);
 
-/** The version of the linked library, such as "1.0.0". */
+/** The version of the linked library, such as "2.0.0". */
 const char* kelpie_version(void);
 
 /** A learning model of all axes of one vehicle. */

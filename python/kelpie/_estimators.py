@@ -48,7 +48,7 @@ rate : rows per second [Hz] where no times are given; forgetting depends on age.
 nominal : what is known of the vehicle beforehand, for fit() and the first partial_fit(): a
     model.json of an earlier drive or of a like vehicle, or several, of which the mean is taken; or
     coefficients by target and term, as {{"udot": {{"u": -0.4, "u*|u|": -1.2, "1": 0.0}}}}. A term that
-    is not named has 0 (docs/method/committee.md).
+    is not named has 0 (docs/method/posterior.md).
 
 Further parameters are the settings of `kelpie config`. None takes the value of the preset. With
 several targets, a setting may be a list with a value for each target.
@@ -61,12 +61,11 @@ decisions_ : structured array of y's shape, or a data frame after a data frame: 
     every row of the last fit() or partial_fit(). `predicted`, `lower`, `upper` are from before the
     row was learned: one step ahead. `disturbance` is the estimate from the model's last errors,
     `corrected_lower` and `corrected_upper` the interval around the sum. Further `verdict`
-    (Verdict), `had_model`, `early` (by a model with a scale of few rows), `similarity`, `outliers`,
+    (Verdict), `had_model`, `similarity`, `outliers`,
     `forgotten`, `released`, `iterations`, `kkt_gap`, `served`, `unserved`, `unfinished`,
-    `fallbacks`, `suspected` (errors have grown: a challenger is tried),
-    `changed` (a change of the vehicle was found), `changed_since` [s], `recalled` (number of the
-    recalled past model, or 0), `withdrawn` (the last change was an error: the previous model is
-    back), `regained` (samples gained with another model).
+    `fallbacks`, `changed` (a change of the vehicle was found), `changed_since` [s], `recalled`
+    (number of the past vehicle that has returned, or 0), `withdrawn` (the last change was an
+    error: the model goes back).
 coef_, terms_ : the physics terms and their coefficients.
 status_ : buffer, support vectors and totals of every target.
 n_features_in_, feature_names_in_ : as in scikit-learn.

@@ -90,7 +90,6 @@ class Parameters(ParameterAccess, RegressorMixin, BaseEstimator):
         memory: Optional[int] = None,
         # Scale
         scaling: Optional[str] = None,
-        track: Optional[float] = None,
         # Kernel
         gamma: Number = None,
         fine: Number = None,

@@ -7,14 +7,13 @@ namespace kelpie::python {
 
 void bind_live_model(py::module_& module) {
   PYBIND11_NUMPY_DTYPE_EX(
-      Decision, verdict, "verdict", prediction.value, "predicted", had_model, "had_model", early,
-      "early", prediction.lower, "lower", prediction.upper, "upper", prediction.disturbance,
-      "disturbance", prediction.corrected_lower, "corrected_lower", prediction.corrected_upper,
-      "corrected_upper", similarity, "similarity", outliers, "outliers", forgotten, "forgotten",
-      released, "released", iterations, "iterations", kkt_gap, "kkt_gap", published, "served",
-      rejected_by_tolerance, "unserved", unfinished, "unfinished", fallbacks, "fallbacks",
-      suspected, "suspected", changed, "changed", changed_since, "changed_since", recalled,
-      "recalled", withdrawn, "withdrawn", regained, "regained");
+      Decision, verdict, "verdict", prediction.value, "predicted", had_model, "had_model",
+      prediction.lower, "lower", prediction.upper, "upper", prediction.disturbance, "disturbance",
+      prediction.corrected_lower, "corrected_lower", prediction.corrected_upper, "corrected_upper",
+      similarity, "similarity", outliers, "outliers", forgotten, "forgotten", released, "released",
+      iterations, "iterations", kkt_gap, "kkt_gap", published, "served", rejected_by_tolerance,
+      "unserved", unfinished, "unfinished", fallbacks, "fallbacks", changed, "changed",
+      changed_since, "changed_since", recalled, "recalled", withdrawn, "withdrawn");
   PYBIND11_NUMPY_DTYPE(Prediction, value, lower, upper, novelty, disturbance, corrected_lower,
                        corrected_upper);
   module.attr("decision_dtype") = py::dtype::of<Decision>();

@@ -24,14 +24,6 @@ class Moments {
 
   void add(std::span<const double> x);  ///< Cost O(d²). Allocates nothing.
 
-  /// Sets the state after `count` samples of this mean and covariance. Requires 2 <= count <=
-  /// memory.
-  void assume(std::span<const double> mean, const Matrix& covariance, std::size_t count);
-
-  /// The samples so far count as at most `count` samples from now on; mean and covariance stay.
-  /// Requires count >= 2. Allocates nothing.
-  void lighten(std::size_t count);
-
   std::size_t count() const { return count_; }  ///< Samples, at most `memory`.
   std::span<const double> mean() const { return mean_; }
   /// Sample covariance, divided by n − 1; 0 for n < 2. Allocates.
@@ -89,19 +81,12 @@ struct InputScaling {
   /// The covariance Σ behind W; 0 for inputs left out.
   Matrix covariance() const;
 
-  /// The largest standard deviation of a scaled input by these moments, 1 without growth; infinite
-  /// for an input left out that has moved.
-  double growth(const Moments& moments) const;
-
-  /// Becomes the scaling of these moments. False when no input moves, or (ScalingKind::full) Σ is
-  /// singular, see first_dependent(); the scaling is undefined then. Allocates nothing for the same
-  /// number of inputs, except with ScalingKind::full.
-  bool take(const Moments& moments, ScalingKind kind);
-
-  /// A new scaling; empty where take() is false.
+  /// The scaling of these moments; empty when no input moves, or (ScalingKind::full) Σ is singular,
+  /// see first_dependent().
   static std::optional<InputScaling> from(const Moments& moments, ScalingKind kind);
 
  private:
+  bool take(const Moments& moments, ScalingKind kind);
   bool take_full(const Moments& moments);
 };
 

@@ -39,13 +39,13 @@ struct TrainedModel;
 /// moved from can only be assigned or destroyed. Copies are deep.
 class DynamicsModel final : public OnlineModel {
  public:
-  /// Takes the scaling from the first samples. Throws InputError on settings that don't validate,
+  /// Throws InputError on settings that don't validate,
   /// no inputs or more than kMostInputs, no targets, two inputs or two targets of one name, or
   /// settings for another number of targets.
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
                 const ModelSettings& settings);
 
-  /// With a given scaling, one per target.
+  /// With a given scaling, one per target, of `learner = svr`; throws InputError with another.
   DynamicsModel(std::vector<std::string> inputs, std::vector<std::string> targets,
                 const ModelSettings& settings, std::span<const AxisScaling> scaling);
 
@@ -56,11 +56,10 @@ class DynamicsModel final : public OnlineModel {
   ~DynamicsModel() override;
 
   /// Limits the work of the solvers in every later update; a default Budget never ends. Each solver
-  /// of each axis (learner, challenger) has the budget for itself; to bound a whole update, give a
-  /// budget whose `expired` compares a clock with a deadline set before the update. When the budget
-  /// runs out, the previous model stays in service, and the next update continues the work before
-  /// it takes a sample. A new scale and a recall keep to the budget, except with `adapt = none`.
-  /// Not part of the saved state. Without a budget, WorkLimit bounds the work of an update.
+  /// of each axis has the budget for itself; to bound a whole update, give a budget whose `expired`
+  /// compares a clock with a deadline set before the update. When the budget runs out, the previous
+  /// model stays in service, and the next update continues the work before it takes a sample. Not
+  /// part of the saved state. Without a budget, WorkLimit bounds the work of an update.
   void limit(const Budget& budget);
 
   std::size_t inputs() const;
@@ -94,7 +93,7 @@ class DynamicsModel final : public OnlineModel {
   const Diagnosis* diagnosis() const;
   std::vector<Finding> findings() const;  ///< The findings by the log's clock. Allocates.
 
-  /// The past models of an axis (docs/method/learner.md). Allocates.
+  /// The past models of an axis (docs/method/posterior.md). Allocates.
   std::vector<StoredPastModel> past_models(std::size_t axis) const;
 
   /// Gives an axis past models of an earlier run, for recall when their vehicle returns. Requires
@@ -114,16 +113,13 @@ class DynamicsModel final : public OnlineModel {
   static DynamicsModel resume(DynamicsModel fresh, std::string_view saved);
 
   /// A model that continues to learn from a trained model, from the time `start_s` [s] on, with the
-  /// settings of the trained model. The first predictions equal those of the trained model to the
-  /// solver's tolerance; of the member `memory` and of `learner = posterior` to about the usual
-  /// error. Parts that a trained model doesn't hold start anew: intervals, disturbance, steady
-  /// part, past models, totals; save() keeps them. Throws InputError on settings with other terms
-  /// than the model's.
+  /// settings of the trained model. The first predictions equal those of the trained model to about
+  /// the usual error, with `learner = svr` to the solver's tolerance. Parts that a trained model
+  /// doesn't hold start anew: intervals, disturbance, steady part, past models, totals; save()
+  /// keeps them. Throws InputError on settings with other terms than the model's.
   static DynamicsModel resume_from(const TrainedModel& trained, double start_s = 0.0);
 
-  /// Whether every axis has a model with a scale of its own. An early model is in service from the
-  /// tenth sample on (Decision::early), but is neither kept nor shared.
-  bool ready() const;
+  bool ready() const;  ///< Whether every axis has a model: some ten samples.
 
   TrainedModel trained() const;  ///< A copy of the models. Requires ready().
 
@@ -145,7 +141,7 @@ class DynamicsModel final : public OnlineModel {
 
 /// Gives an axis of a model coefficients of physics terms known beforehand, as of the vehicle's
 /// equations of motion or of an earlier model, from which learning begins
-/// (docs/method/committee.md): terms by their text (TermSet::text()), `1` for the constant; terms
+/// (docs/method/posterior.md): terms by their text (TermSet::text()), `1` for the constant; terms
 /// without a coefficient have 0. An empty list: nothing is known. Errors of coefficients are not
 /// read. Without effect on a learner alone (`learner = svr`). Requires that nothing has been
 /// learned yet. Throws InputError on an axis or term that the model does not have, a term given

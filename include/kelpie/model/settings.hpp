@@ -17,20 +17,18 @@ namespace kelpie {
 
 /// The learner of an axis.
 enum class LearnerKind : std::uint8_t {
-  committee,  ///< several learners, weighted by their errors (Committee)
+  posterior,  ///< one Gaussian posterior of terms and kernels, beside the paper's learner
   svr,        ///< the paper's learner alone
-  posterior,  ///< one Gaussian posterior of terms and kernels
 };
 
 /// Settings common to all axes of a model.
 struct SharedSettings {
-  LearnerKind learner = LearnerKind::committee;
+  LearnerKind learner = LearnerKind::posterior;
   ScalingKind scaling = ScalingKind::diagonal;
   std::string terms = "auto";   ///< physics terms of the kernel: TermSet::from
   std::string states = "auto";  ///< inputs with the targets as derivatives: find_states
-  double track = 2.0;           ///< ratio of growth that renews the scale; 0: never
   double coverage = 0.9;        ///< promised share of truths within prediction intervals
-  int warmup = 50;              ///< first samples, which give the scaling unless given
+  int warmup = 50;              ///< first samples, which give the scaling of `svr` unless given
 
   void validate() const;  ///< Throws InputError naming the field.
 };
@@ -69,6 +67,9 @@ std::string unknown_setting(std::string_view name);
 
 /// Whether the setting existed in older files only.
 bool removed_setting(std::string_view name);
+
+/// A value as written today: `posterior` for the learner `committee` of older files.
+std::string present_value(std::string_view name, std::string_view text);
 
 std::span<const std::string_view> preset_names();  ///< "default", "small", "paper".
 

@@ -57,7 +57,7 @@ class TermSet {
   static TermSet baseline(std::span<const std::string> inputs, std::size_t velocities);
 
   std::size_t size() const { return terms_.size(); }
-  /// Number of terms, the first ones, in the committee's linear member: all, except the products
+  /// Number of terms, the first ones, in a model linear in the commands: all, except the products
   /// with a command in `quadratic`, and with a command and a velocity in open_loop().
   std::size_t without_products() const { return without_products_; }
   /// The inputs with the attitude, of which `auto` has restoring terms only, ascending. The kernel

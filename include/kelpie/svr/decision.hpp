@@ -46,29 +46,26 @@ struct Decision {
   /// By the model in service before the sample was learned; NaN for an invalid sample.
   Prediction prediction{};
   bool had_model = false;   ///< a model was in service; without one the prediction is a mean
-  bool early = false;       ///< an early model (docs/method/committee.md)
   double similarity = 0.0;  ///< largest κ_SE to a sample in the buffer, before learning
   int outliers = 0;         ///< samples rejected as outliers in this step
-  int forgotten = 0;     ///< samples removed from a full buffer, or lost with a change of the model
-  int released = 0;      ///< samples removed because their weight had become 0
-  int regained = 0;      ///< samples gained with a change of the model
-  int iterations = 0;    ///< solver iterations, summed over the solves of this step
-  double kkt_gap = 0.0;  ///< after this step, in units of the standardised target
-  bool published = false;  ///< a newly trained model went into service (gap within tolerance)
+  int forgotten = 0;        ///< samples removed from a full buffer
+  int released = 0;         ///< samples removed because their weight had become 0
+  int iterations = 0;       ///< solver iterations, summed over the solves of this step
+  double kkt_gap = 0.0;     ///< after this step, in units of the standardised target
+  bool published = false;   ///< a newly trained model went into service (gap within tolerance)
   bool rejected_by_tolerance = false;  ///< the training ended outside the tolerance
   bool unfinished = false;  ///< Budget or WorkLimit exhausted; the next update continues the work
   int fallbacks = 0;        ///< solves in which SMO replaced the path solver
-  bool suspected = false;   ///< errors have grown: a challenger starts to learn
-  bool changed = false;     ///< a change of the vehicle was confirmed: another model took over
-  double changed_since = 0.0;  ///< start of the grown errors [s], with `changed` or `returning`
-  bool withdrawn = false;      ///< the last change was an error: the model before took over again
-  bool returning = false;      ///< a past model fits; the next updates load its samples
-  std::int64_t recalled = 0;   ///< number of the past model taken into service (PastModels), or 0
+  bool changed = false;     ///< a change of the vehicle was found, and the model follows
+  double changed_since = 0.0;  ///< start of the change [s], with `changed`
+  bool withdrawn = false;      ///< the last change was an error: the model goes back
+  bool returning = false;      ///< a past vehicle has returned
+  std::int64_t recalled = 0;   ///< number of the past vehicle that has returned, or 0
 };
 
 /// Sums of the decisions of a stream since the start; tally_fields() has the meanings. Every
-/// `accepted` or `regained` sample is in the buffer or in `outliers`, `forgotten` or `released`. No
-/// total ever decreases.
+/// `accepted` sample of the paper's learner is in the buffer or in `outliers`, `forgotten` or
+/// `released`. No total ever decreases.
 struct Tally {
   std::int64_t accepted = 0;
   std::int64_t explained = 0;
@@ -78,12 +75,10 @@ struct Tally {
   std::int64_t outliers = 0;
   std::int64_t forgotten = 0;
   std::int64_t released = 0;
-  std::int64_t regained = 0;
   std::int64_t rejected_by_tolerance = 0;
   std::int64_t crowded_out = 0;
   std::int64_t unfinished = 0;
   std::int64_t fallbacks = 0;
-  std::int64_t suspicions = 0;
   std::int64_t changes = 0;
   std::int64_t recalls = 0;
   std::int64_t withdrawn = 0;
@@ -99,7 +94,7 @@ enum class TallyKind : std::uint8_t {
   arrival,    ///< arriving samples by verdict, without held samples
   departure,  ///< samples removed from the buffer
   trouble,    ///< effects of a budget, and solver failures
-  change,     ///< reactions to grown errors
+  change,     ///< changes of the vehicle
 };
 
 /// A total: the source of archive, result.json, pages, tables and Python.

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 
@@ -17,9 +16,6 @@ class SampleCollector;
 class Solver;
 class SvrFunction;
 struct PastModel;
-
-/// Changes a scaled sample and its standardised target in place.
-using SampleMap = std::function<void(std::span<double> x, double& y)>;
 
 /// The paper's learner for one axis (Algorithm 1), on scaled inputs and a standardised target:
 /// include, collect, train, reject outliers, forget, publish.
@@ -51,16 +47,11 @@ class OnlineSvr final : public OnlineRegressor {
 
   Status status() const override;
 
-  /// Maps the samples to another scale and solves the problem again. Cost: tens of milliseconds
-  /// with a full buffer of 900, whatever the budget. Allocates nothing.
-  void rescale(const SampleMap& map);
-
-  /// Learns the samples of a past model, mapped by `map` if given, in slices: each call does a
-  /// fraction of a millisecond of work, less under a budget, and returns true after the last slice.
-  /// Times are shifted to give the latest sample the time `now`. Requires clear() before the first
-  /// call, no other call until the last, equal arguments in each, and a past model of an equal
-  /// buffer. Allocates nothing.
-  bool relearn_slice(const PastModel& past, double now, const SampleMap& map = {});
+  /// Learns the samples of a past model in slices: each call does a fraction of a millisecond of
+  /// work, less under a budget, and returns true after the last slice. Times are shifted to give
+  /// the latest sample the time `now`. Requires clear() before the first call, no other call until
+  /// the last, equal arguments in each, and a past model of an equal buffer. Allocates nothing.
+  bool relearn_slice(const PastModel& past, double now);
 
   /// Forgets everything and learns the samples of a past model in one call.
   void relearn(const PastModel& past, double now);
@@ -110,7 +101,7 @@ class OnlineSvr final : public OnlineRegressor {
   void visit_leaving(Archive& archive);
   bool release_slice();
   void warm_start(const SvrFunction& function);
-  void collect_slice(const PastModel& past, std::size_t samples, double now, const SampleMap& map);
+  void collect_slice(const PastModel& past, std::size_t samples, double now);
   double predicted(std::span<const double> z) const;
 
   OnlineSvrSettings settings_;

@@ -17,7 +17,6 @@ struct Status {
   int support_vectors = 0;  ///< samples with a weight
   double kkt_gap = 0.0;     ///< of the model in service
   bool ready = false;       ///< a trained model is in service
-  bool early = false;       ///< an early model (docs/method/committee.md)
   Tally tally{};
 
   void visit(Archive& archive);  ///< core/archive.hpp
@@ -30,7 +29,7 @@ struct Coefficient {
   double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error; NaN: unknown
 };
 
-/// The weight of a committee's member: 0 to 1, with the sum 1.
+/// The weight of a mixture's member: 0 to 1, with the sum 1.
 struct MemberShare {
   std::string name;
   double share = 0.0;
@@ -65,7 +64,7 @@ class OnlineRegressor {
   /// The coefficients of the physics terms in the model in service; empty without terms. Allocates.
   virtual std::vector<Coefficient> coefficients() const { return {}; }
 
-  /// The members of a committee; empty for a single learner. Allocates.
+  /// The members of a mixture; empty for a single learner. Allocates.
   virtual std::vector<MemberShare> members() const { return {}; }
 
  protected:

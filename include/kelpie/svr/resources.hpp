@@ -72,15 +72,6 @@ class Budget {
     return part;
   }
 
-  /// A copy with half of the remaining shared work.
-  Budget split_half() const {
-    Budget part = *this;
-    if (work_ != nullptr && *work_ > kept_) {
-      part.kept_ += (*work_ - kept_) / 2;
-    }
-    return part;
-  }
-
  private:
   static constexpr int kNoLimit = std::numeric_limits<int>::max();
 

@@ -25,8 +25,8 @@ enum class ForgetRule : std::uint8_t {
 
 /// Reaction to a change of the vehicle.
 enum class AdaptRule : std::uint8_t {
-  none,        ///< no reaction: old samples are forgotten gradually
-  challenger,  ///< a learner without samples takes over if better
+  none,    ///< no reaction: old samples are forgotten gradually
+  follow,  ///< what was learned becomes what would have been learned of the changed vehicle
 };
 
 /// Solver of the dual problem.
@@ -54,9 +54,9 @@ struct OnlineSvrSettings {
   OutlierRule outlier = OutlierRule::robust;
   double outlier_factor = 16.0;  ///< robust: times the usual error
   ForgetRule forget = ForgetRule::age;
-  AdaptRule adapt = AdaptRule::challenger;  ///< AdaptiveSvr
-  int memory = 4;                           ///< largest number of past models: PastModels
-  int anchors = 200;                        ///< largest number of samples without weight
+  AdaptRule adapt = AdaptRule::follow;
+  int memory = 4;                ///< largest number of past vehicles
+  int anchors = 200;             ///< largest number of samples without weight
   double bandwidth = 0.0;        ///< h of H = h Σ^½, eq. (8); 0: Scott's B^(−1/(d+4))
   double tolerance = 1e-3;       ///< largest KKT gap of a published model
   int max_iterations = 100'000;  ///< of SMO, per solve
@@ -69,7 +69,7 @@ struct OnlineSvrSettings {
 
   /// Number of places for past models; 0 without detection of changes.
   std::size_t past_models() const {
-    return adapt == AdaptRule::challenger ? static_cast<std::size_t>(memory) : 0;
+    return adapt == AdaptRule::follow ? static_cast<std::size_t>(memory) : 0;
   }
 
   /// Number of places for samples: B, and the sample in learning.

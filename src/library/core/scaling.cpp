@@ -37,19 +37,6 @@ void Moments::add(std::span<const double> x) {
   scatter.noalias() += before * (as_vector(x) - mean).transpose();
 }
 
-void Moments::assume(std::span<const double> mean, const Matrix& covariance, std::size_t count) {
-  count_ = count;
-  std::ranges::copy(mean, mean_.begin());
-  as_matrix(scatter_) = static_cast<double>(count - 1) * as_matrix(covariance);
-}
-
-void Moments::lighten(std::size_t count) {
-  if (count_ > count) {
-    as_matrix(scatter_) *= static_cast<double>(count - 1) / static_cast<double>(count_ - 1);
-    count_ = count;
-  }
-}
-
 double Moments::covariance(std::size_t i, std::size_t j) const {
   const double freedom = count_ > 1 ? static_cast<double>(count_ - 1) : 1.0;
   return 0.5 * (scatter_(i, j) + scatter_(j, i)) / freedom;
@@ -152,30 +139,10 @@ std::optional<std::size_t> first_dependent(const Moments& moments, ScalingKind k
   return std::nullopt;
 }
 
-double InputScaling::growth(const Moments& moments) const {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < dimension(); ++i) {
-    const double variance = moments.covariance(i, i);
-    if (whitening(i, i) == 0.0 && moves(variance, moments.mean()[i])) {
-      return std::numeric_limits<double>::infinity();
-    }
-    double scaled = 0.0;  // of row i of W Σ Wᵀ
-    for (std::size_t j = 0; j <= i; ++j) {
-      for (std::size_t k = 0; k <= i && whitening(i, j) != 0.0; ++k) {
-        scaled += whitening(i, j) * moments.covariance(j, k) * whitening(i, k);
-      }
-    }
-    largest = std::max(largest, scaled);
-  }
-  return std::sqrt(largest);
-}
-
 bool InputScaling::take(const Moments& moments, ScalingKind kind) {
   const std::size_t inputs = moments.dimension();
   mean.assign(moments.mean().begin(), moments.mean().end());
-  if (whitening.rows() != inputs) {
-    whitening = Matrix(inputs, inputs);
-  }
+  whitening = Matrix(inputs, inputs);
   if (kind == ScalingKind::full) {
     return take_full(moments);
   }

@@ -325,7 +325,7 @@ ModelSettings read_settings(const JsonNode& node, std::size_t axes) {
     if (name == "preset") {
       settings.preset = text;
     } else if (!removed_setting(name)) {  // a removed one: the kernel of each axis tells
-      settings.assign(name, text);
+      settings.assign(name, present_value(name, text));
     }
   }
   settings.validate();

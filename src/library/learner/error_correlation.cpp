@@ -32,15 +32,6 @@ void ErrorCorrelation::add(double error) {
   rows_per_sample_ = (1.0 + next) / (1.0 - next);
 }
 
-void ErrorCorrelation::rescale(double gain) {
-  for (double& error : errors_) {
-    error *= gain;
-  }
-  for (double& product : products_) {
-    product *= gain * gain;
-  }
-}
-
 void ErrorCorrelation::visit(Archive& archive) {
   archive.numbers(errors_);
   archive.numbers(products_);

@@ -24,8 +24,6 @@ class ErrorCorrelation {
   /// Adds the error of the next sample in time. Requires a finite value.
   void add(double error);
 
-  void rescale(double gain);  ///< Errors have another unit: each is multiplied by gain > 0.
-
   double rows_per_sample() const { return rows_per_sample_; }  ///< τ
 
   void visit(Archive& archive);  ///< core/archive.hpp

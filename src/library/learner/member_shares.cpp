@@ -24,10 +24,6 @@ void MemberShares::score(std::span<const double> errors, std::size_t block) {
   }
 }
 
-void MemberShares::calibrate(double said, double mean, double was) {
-  calibration_.add((said - mean) / slope_, was - mean);
-}
-
 void MemberShares::learn_block() {
   double all = 0.0;
   for (std::size_t k = 0; k < members_; ++k) {
@@ -40,7 +36,6 @@ void MemberShares::learn_block() {
   const double loss = std::max(all, kOnline.shares.least_usual);
   losses_.all = keep * losses_.all + loss;
   losses_.squares = keep * keep * losses_.squares + loss * loss;
-  losses_.calibration = calibration_;
   for (std::size_t k = 0; k < members_; ++k) {
     losses_.of[k] = keep * losses_.of[k] + block_[k];
   }
@@ -48,17 +43,9 @@ void MemberShares::learn_block() {
 
 void MemberShares::resume_from(std::span<const double> shares) {
   losses_ = {};
-  calibration_ = {};
   for (std::size_t k = 0; k < members_; ++k) {
     losses_.first[k] = std::log(std::max(shares[k], kOnline.shares.least_share));
   }
-  update_weights();
-  start_block();
-}
-
-void MemberShares::halve_evidence() {
-  calibration_.halve();
-  losses_.calibration = calibration_;
   update_weights();
   start_block();
 }
@@ -69,7 +56,6 @@ void MemberShares::start_block() {
 }
 
 void MemberShares::update_weights() {
-  slope_ = losses_.calibration.value();
   const double before = std::pow(kOnline.shares.keep, losses_.blocks);
   const double least = kOnline.shares.least_usual;
   const double all = std::max(losses_.all, least);
@@ -86,9 +72,8 @@ void MemberShares::update_weights() {
     total += shares_[k];
   }
   for (std::size_t k = 0; k < members_; ++k) {
-    shares_[k] *= slope_ / total;
+    shares_[k] *= 1.0 / total;
   }
-  shares_[members_ - 1] += 1.0 - slope_;
 }
 
 void MemberShares::visit(Archive& archive) {
@@ -99,8 +84,6 @@ void MemberShares::visit(Archive& archive) {
   archive.number(losses_.all);
   archive.number(losses_.squares);
   archive.whole(losses_.blocks);
-  archive.part("calibration at the block", losses_.calibration);
-  archive.part("calibration", calibration_);
   if (archive.loading()) {
     update_weights();
   }

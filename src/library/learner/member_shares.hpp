@@ -7,11 +7,10 @@
 #include <span>
 
 #include "kelpie/core/archive.hpp"
-#include "learner/calibration_slope.hpp"
 
 namespace kelpie {
 
-/// Weights of a committee's members, from their errors on samples they have not learned yet, recent
+/// Weights of a mixture's members, from their errors on samples they have not learned yet, recent
 /// errors first (exponential weights: Cesa-Bianchi & Lugosi 2006).
 ///
 ///     share_k ∝ exp(λⁿ π_k − η √s L_k / A),  s = min(1 − λⁿ, 4/3 (1 − λ) A²/Q)
@@ -20,16 +19,14 @@ namespace kelpie {
 ///
 /// The loss of an error is the square, of an error of at most 10: rare manoeuvres of a calm vehicle
 /// count most. Samples that may be garbage are not for score().
-/// Division by the committee's own losses A makes the weights independent of the noise level. The
+/// Division by the mixture's own losses A makes the weights independent of the noise level. The
 /// first losses are of members that have learned little: λₙ gives block m of the first blocks a
 /// weight in proportion to m, and the exponent grows as √n at first (Cesa-Bianchi & Lugosi 2006,
 /// section 2.3), while π_k, the logarithm of the first share, fades. A²/Q is the effective number
 /// of blocks (Kish 1965), 3n/4 for n blocks of equal losses: after a change of an accurate model a
 /// single block outweighs all others, and tells little of the members. A block consists of kBlock
 /// samples, predicted by copies of the members made before the block. (One step ahead, a member
-/// with a memory of the last sample would have the largest weight.) The last member is the mean of
-/// the targets: the shares of the members are multiplied by the CalibrationSlope, and the mean
-/// receives the rest. Allocates nothing.
+/// with a memory of the last sample would have the largest weight.) Allocates nothing.
 class MemberShares {
  public:
   static constexpr std::size_t kMostMembers = 8;
@@ -45,19 +42,13 @@ class MemberShares {
   /// present block, 1 to kMostBlock.
   void score(std::span<const double> errors, std::size_t block = kBlock);
 
-  /// Adds the committee's prediction `said` of a sample before learning, the member `mean`'s
-  /// prediction and the true value `was`.
-  void calibrate(double said, double mean, double was);
-
   /// Whether a block has just ended: the members have to be copied.
   bool block_ended() const { return scored_ == 0; }
 
   /// Restores shares. Requires a share per member, with the sum 1.
   void resume_from(std::span<const double> shares);
 
-  /// After retraining of the members: discards the present block and halves the evidence of the
-  /// calibration.
-  void halve_evidence();
+  void start_block();  ///< Discards the present block, after retraining of the members.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -65,15 +56,13 @@ class MemberShares {
   using Values = std::array<double, kMostMembers>;
 
   struct Losses {
-    Values first{};                  ///< π_k
-    Values of{};                     ///< L_k
-    double all = 0.0;                ///< A
-    double squares = 0.0;            ///< Q
-    std::int64_t blocks = 0;         ///< n
-    CalibrationSlope calibration{};  ///< at the end of the block
+    Values first{};           ///< π_k
+    Values of{};              ///< L_k
+    double all = 0.0;         ///< A
+    double squares = 0.0;     ///< Q
+    std::int64_t blocks = 0;  ///< n
   };
 
-  void start_block();
   void learn_block();
   void update_weights();
 
@@ -81,8 +70,6 @@ class MemberShares {
   std::size_t scored_ = 0;  ///< samples of the present block
   Values block_{};
   Losses losses_;
-  CalibrationSlope calibration_;
-  double slope_ = 1.0;  ///< applied in `shares_`
   Values shares_{};
 };
 

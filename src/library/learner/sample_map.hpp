@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
 
-#include "kelpie/svr/online_svr.hpp"
-
 namespace kelpie {
+
+/// Changes a scaled sample and its standardised target in place.
+using SampleMap = std::function<void(std::span<double> x, double& y)>;
 
 /// A change of scale on physics terms and target: φ'_k = factor_k φ_k, y' = gain · y + offset.
 struct LinearPart {

@@ -2,7 +2,6 @@
 #include "learner/seen_range.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "learner/tuning.hpp"
@@ -40,16 +39,6 @@ ValueRange SeenRange::range() const {
   return {.low = least_.back() - margin, .high = greatest_.back() + margin};
 }
 
-void SeenRange::resume_from(const ValueRange& range) {
-  clear();
-  if (std::isfinite(range.high - range.low)) {
-    const double margin = margin_ / (1.0 + 2.0 * margin_) * (range.high - range.low);
-    least_.fill(range.low + margin);
-    greatest_.fill(range.high - margin);
-    count_ = kLeast;
-  }
-}
-
 void SeenRange::rescale(double gain, double offset) {
   for (auto* const ends : {&least_, &greatest_}) {
     for (double& end : *ends) {
@@ -85,23 +74,10 @@ void SeenTermRanges::add(std::span<const double> z) {
   measure();
 }
 
-void SeenTermRanges::resume_from(std::span<const ValueRange> ranges) {
-  resize(ranges.size());
-  for (std::size_t k = 0; k < ranges.size(); ++k) {
-    seen_[k].resume_from(ranges[k]);
-    ranges_[k] = ranges[k];
-  }
-}
-
 void SeenTermRanges::rescale(std::span<const double> factors) {
   for (std::size_t k = 0; k < seen_.size(); ++k) {
     seen_[k].rescale(factors[k], 0.0);
   }
-  measure();
-}
-
-void SeenTermRanges::clear() {
-  std::ranges::for_each(seen_, &SeenRange::clear);
   measure();
 }
 

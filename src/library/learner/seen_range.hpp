@@ -23,9 +23,6 @@ class SeenRange {
 
   ValueRange range() const;  ///< Infinite before the first value.
 
-  /// Restores a range; an infinite range: as clear().
-  void resume_from(const ValueRange& range);
-
   /// Values y become gain · y + offset. Requires gain > 0.
   void rescale(double gain, double offset);
 
@@ -55,13 +52,8 @@ class SeenTermRanges {
   /// Adds the terms of a sample `z`, the last numbers of z. Requires no NaN.
   void add(std::span<const double> z);
 
-  /// SeenRange::resume_from() for every term. Allocates.
-  void resume_from(std::span<const ValueRange> ranges);
-
   /// Every term becomes factor · term. Requires a factor > 0 per term.
   void rescale(std::span<const double> factors);
-
-  void clear();  ///< Forgets the values.
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -77,16 +77,6 @@ void TriangularFit::hold(std::size_t term, double rows) {
   solve();
 }
 
-void TriangularFit::hold(std::span<const double> expected, double rows) {
-  for (std::size_t k = 0; k < terms(); ++k) {
-    std::ranges::fill(row_, 0.0);
-    row_[k] = std::sqrt(rows * moment_[k]);
-    row_.back() = row_[k] * expected[k];
-    absorb();
-  }
-  solve();
-}
-
 void TriangularFit::set_theta(std::span<const double> theta) {
   const auto m = static_cast<Eigen::Index>(terms());
   auto factor = as_factor(factor_, terms());
@@ -140,32 +130,18 @@ void TriangularFit::clear() {
   rows_ = 0;
 }
 
-void TriangularFit::rescale(std::span<const double> factors, double gain) {
+void TriangularFit::rescale(std::span<const double> factors) {
   auto factor = as_factor(factor_, terms());
   const Eigen::Index m = factor.rows();
   const auto by = as_vector(factors);
   for (Eigen::Index k = 0; k < m; ++k) {
     factor.row(k).head(m).array() *= by.transpose().array();
   }
-  factor.rightCols(factor.cols() - m) *= gain;
   for (std::size_t k = 0; k < terms(); ++k) {
     moment_[k] *= factors[k] * factors[k];
     prior_[k] *= factors[k] * factors[k];
   }
   solve();
-}
-
-void TriangularFit::set_prior(std::span<const double> theta, std::span<const double> information) {
-  clear();
-  auto factor = as_factor(factor_, terms());
-  const auto m = static_cast<Eigen::Index>(terms());
-  for (Eigen::Index k = 0; k < m; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    theta_[i] = information[i] > 0.0 ? theta[i] : 0.0;
-    factor(k, k) = std::sqrt(information[i]);
-    factor(k, m) = factor(k, k) * theta_[i];
-    prior_[i] = information[i];
-  }
 }
 
 // Most terms of a young fit are centres to come: a row of zeros takes a flag's place.

@@ -51,10 +51,6 @@ class TriangularFit {
   /// O(m²).
   void hold(std::size_t term, double rows);
 
-  /// Adds θ = `expected` with the weight of `rows` rows of every term's usual size. Requires one
-  /// target, a value per term, rows >= 0. Cost O(m³).
-  void hold(std::span<const double> expected, double rows);
-
   /// Sets θ of all targets; the information about the coefficients does not change. Requires a
   /// value per term, 0 for a term without excitation. Cost O(m²).
   void set_theta(std::span<const double> theta);
@@ -66,16 +62,11 @@ class TriangularFit {
   /// term without excitation. Requires a value per term. Cost O(m²).
   double leverage(std::span<const double> phi) const;
 
-  /// Terms and targets have other units: φ_k becomes factors[k] φ_k, y becomes gain · y. Requires
-  /// positive numbers, a factor per term. Cost O(m²).
-  void rescale(std::span<const double> factors, double gain);
+  /// Terms have other units: φ_k becomes factors[k] φ_k. Requires a factor > 0 per term. Cost
+  /// O(m²).
+  void rescale(std::span<const double> factors);
 
   void clear();  ///< Forgets the rows.
-
-  /// Forgets the rows and starts from θ as a prior, with independent coefficients of the
-  /// information 1/P_kk; θ_k = 0 for information 0. Requires one target, a value per term of each,
-  /// information >= 0. Cost O(m²), without arithmetic.
-  void set_prior(std::span<const double> theta, std::span<const double> information);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 

@@ -8,14 +8,13 @@
 #include <limits>
 
 #include "core/eigen.hpp"
-#include "learner/tuning.hpp"
 #include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr const auto& kChange = kModelTuning.change;
-constexpr double kKept = kOnline.members.kept;
+constexpr double kKept = kChange.kept;
 constexpr double kBefore = -std::numeric_limits<double>::infinity();  // of all times [s]
 
 // Of a thruster's effect, or of drag, within the errors of a factor.
@@ -448,7 +447,7 @@ ChangeMonitor::Event ChangeMonitor::settle() {
       phi_[k] = 1.0 / term_gain(terms_, k, told_gains_);
     }
     phi_.back() = 1.0;
-    fit_.rescale(phi_, 1.0);
+    fit_.rescale(phi_);
   } else {
     std::ranges::transform(start.theta, told_, step_.begin(), std::plus<>{});
     fit_.set_theta(step_);

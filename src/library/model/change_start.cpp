@@ -6,14 +6,13 @@
 #include <limits>
 
 #include "core/eigen.hpp"
-#include "learner/tuning.hpp"
 #include "model/tuning.hpp"
 
 namespace kelpie {
 namespace {
 
 constexpr const auto& kStart = kModelTuning.change;
-constexpr double kHuber = kOnline.members.huber;  // as the members, which follow the monitor
+constexpr double kHuber = kStart.huber;
 constexpr LoneCause kUnknown{.variance = kStart.deviation * kStart.deviation};
 
 // With tails of Huber's (1964) loss.

@@ -19,9 +19,10 @@
 #include "model/answer.hpp"
 #include "model/change_monitor.hpp"
 #include "model/first_moves.hpp"
-#include "model/guarded_axis.hpp"
+#include "model/model_axis.hpp"
 #include "model/posterior_axis.hpp"
 #include "model/snapshot.hpp"
+#include "model/svr_axis.hpp"
 #include "model/update_state.hpp"
 #include "model/work_limit.hpp"
 #include "motion/states.hpp"
@@ -29,7 +30,7 @@
 namespace kelpie {
 namespace {
 
-constexpr const char* kStateVersion = "34";  // of the archive of all classes together
+constexpr const char* kStateVersion = "35";  // of the archive of all classes together
 
 std::vector<std::size_t> body_axes(std::span<const std::string> inputs,
                                    std::span<const std::size_t> states) {
@@ -73,7 +74,7 @@ bool still_named(std::span<const Finding> findings, std::size_t command, double 
 bool adapts(const ModelSettings& settings) {
   return settings.shared.learner != LearnerKind::svr &&
          std::ranges::all_of(settings.axes, [](const OnlineSvrSettings& axis) {
-           return axis.adapt == AdaptRule::challenger;
+           return axis.adapt == AdaptRule::follow;
          });
 }
 
@@ -129,7 +130,7 @@ bool is_refused(const Decision& decision) {
 }
 
 bool is_settled(const Decision& decision) {
-  return decision.had_model && !decision.early;
+  return decision.had_model;
 }
 
 bool is_news(const Decision& decision) {
@@ -206,14 +207,8 @@ DynamicsModel::Parts::Parts(std::vector<std::string> inputs, std::vector<std::st
               "of " + std::to_string(given->term_scale.size()) + " terms; there are " +
                   std::to_string(terms.size()));
     }
-    if (settings.shared.learner == LearnerKind::posterior) {
-      require(!given, "scaling", "'learner = posterior' takes no scale");
-      axes.add(std::make_unique<PosteriorAxis>(dimension, settings.shared, settings.axes[i], terms,
-                                               states));
-    } else {
-      axes.add(std::make_unique<GuardedAxis>(dimension, settings.shared, settings.axes[i], terms,
-                                             std::move(given)));
-    }
+    axes.add(
+        make_axis(dimension, settings.shared, settings.axes[i], terms, states, std::move(given)));
   }
 }
 
@@ -401,20 +396,13 @@ DynamicsModel::~DynamicsModel() = default;
 std::size_t DynamicsModel::bytes(std::span<const std::string> inputs,
                                  const ModelSettings& settings) {
   const TermSet terms = TermSet::from(settings.shared.terms, inputs, settings.axes.size());
-  if (settings.shared.learner == LearnerKind::posterior) {
-    return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
-                                 std::plus<>{}, [&](const OnlineSvrSettings& axis) {
-                                   return PosteriorAxis::bytes(inputs.size(), terms.size(), axis);
-                                 });
-  }
-  const Committee::Plan plan = committee_plan(settings.shared, terms);
+  const auto bytes_of = [&](const OnlineSvrSettings& axis) {
+    return settings.shared.learner == LearnerKind::svr
+               ? SvrAxis::bytes(inputs.size(), terms.size(), axis)
+               : PosteriorAxis::bytes(inputs.size(), terms.size(), axis);
+  };
   return std::transform_reduce(settings.axes.begin(), settings.axes.end(), std::size_t{0},
-                               std::plus<>{}, [&](const OnlineSvrSettings& axis) {
-                                 return GuardedAxis::bytes(
-                                     inputs.size(), terms.size(),
-                                     Committee::bytes(inputs.size(), terms.size(), axis, plan) +
-                                         2 * sizeof(ConformalInterval) + sizeof(Disturbance));
-                               });
+                               std::plus<>{}, bytes_of);
 }
 
 // The way of a sample (docs/reference/architecture.md).
@@ -524,10 +512,7 @@ void DynamicsModel::set_past_models(std::size_t axis, std::vector<StoredPastMode
 }
 
 bool DynamicsModel::ready() const {
-  return parts_->all_axes([](const ModelAxis& axis) {
-    const Status status = axis.status();
-    return status.ready && !status.early;
-  });
+  return parts_->all_axes([](const ModelAxis& axis) { return axis.status().ready; });
 }
 
 std::string DynamicsModel::save() const {

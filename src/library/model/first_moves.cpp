@@ -21,8 +21,8 @@ bool FirstMoves::update(std::span<const double> x, std::span<const double> y,
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     values_[i] = x[commands_[i]];
     const double usual = std::sqrt(moments_.covariance(i, i));
-    moves = moves || (moments_.count() > 0 &&
-                      std::abs(values_[i] - moments_.mean()[i]) > kModelTuning.scale.far * usual);
+    moves = moves || (moments_.count() > 0 && std::abs(values_[i] - moments_.mean()[i]) >
+                                                  kModelTuning.first_moves.far * usual);
   }
   moments_.add(values_);
   const bool known = explains();
@@ -41,7 +41,7 @@ bool FirstMoves::update(std::span<const double> x, std::span<const double> y,
 
 bool FirstMoves::explains() const {
   return std::ranges::any_of(axes_, [](const Explained& axis) {
-    return axis.unexplained < (1.0 - kModelTuning.guard.explained) * axis.spread;
+    return axis.unexplained < (1.0 - kModelTuning.first_moves.explained) * axis.spread;
   });
 }
 

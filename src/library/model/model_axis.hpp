@@ -3,11 +3,14 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "kelpie/core/scaling.hpp"
+#include "kelpie/model/settings.hpp"
 #include "kelpie/model/stored_past_model.hpp"
 #include "kelpie/motion/term_set.hpp"
 #include "kelpie/svr/regressor.hpp"
@@ -16,8 +19,6 @@
 #include "model/snapshot.hpp"
 
 namespace kelpie {
-
-class DynamicsAxis;
 
 /// One axis of a DynamicsModel, whatever learns: a regressor on raw samples with copies of the
 /// model in service for others. Steps of an update, states and exceptions are those of
@@ -35,12 +36,19 @@ class ModelAxis : public OnlineRegressor {
                                        std::span<double> gradient) const = 0;
 
   virtual const TermSet& terms() const = 0;
-  virtual const AxisScaling* scaling() const = 0;        ///< Null while the scale is not known.
-  virtual Snapshot snapshot() const = 0;                 ///< DynamicsAxis::snapshot()
-  virtual void refresh(Snapshot& copy) const = 0;        ///< DynamicsAxis::refresh()
-  virtual Snapshot trained(std::string name) const = 0;  ///< DynamicsAxis::trained()
+  virtual const AxisScaling* scaling() const = 0;  ///< Null while the scale is not known.
 
-  /// DynamicsAxis::apply_change(), of a learner that the ChangeMonitor serves.
+  /// A copy of the model in service with all its uncertainty, and room to refresh() it for good.
+  /// Allocates.
+  virtual Snapshot snapshot() const = 0;
+  /// Brings a copy of this axis up to date. Requires a model in service. Allocates nothing.
+  virtual void refresh(Snapshot& copy) const = 0;
+  /// A copy for a TrainedModel, without a disturbance. Requires a model in service. Allocates.
+  virtual Snapshot trained(std::string name) const = 0;
+
+  /// The vehicle has changed, for a learner that follows. `gains`: all that was learned holds for
+  /// the commands times these factors; if empty, `step` of the coefficients of the first terms, the
+  /// last number of the term 1 [target unit per unit of the term].
   virtual void apply_change(std::span<const CommandGain> /*gains*/,
                             std::span<const double> /*step*/, const Decision& /*news*/) {}
   virtual void expect_vehicle(std::vector<double> coefficients) = 0;
@@ -48,10 +56,17 @@ class ModelAxis : public OnlineRegressor {
   virtual void set_past_models(std::vector<StoredPastModel> models) = 0;
   virtual void resume_from(const Snapshot& trained, double t) = 0;
 
-  /// The axis in service of a committee or of the paper's learner; throws InputError else.
-  virtual const DynamicsAxis& dynamics_axis() const = 0;
   virtual void visit(Archive& archive) = 0;  ///< core/archive.hpp
 };
+
+/// The axis of the learner in the settings. `states`: places of the velocities among the inputs, in
+/// the order of the targets; none where unknown. Throws InputError on settings of the axis that
+/// don't validate, and on a scaling for `learner = posterior`, which takes none. Requires valid
+/// shared settings, inputs <= kMostInputs, and terms and scaling of these inputs.
+std::unique_ptr<ModelAxis> make_axis(std::size_t inputs, const SharedSettings& shared,
+                                     const OnlineSvrSettings& settings, const TermSet& terms,
+                                     std::span<const std::size_t> states,
+                                     std::optional<AxisScaling> scaling = {});
 
 /// The axes of a model, in the order of the targets. Copies are deep.
 class ModelAxes {

@@ -464,12 +464,8 @@ std::vector<StoredPastModel> PosteriorAxis::past_models() const {
   for (const PastVehicle& one : all.vehicles()) {
     SampleSums sums = one.posterior.sums();
     sums.tell_anew(prior_);
-    list.push_back({.info = one.info,
-                    .inputs = {},
-                    .targets = {},
-                    .times_s = {},
-                    .rows_per_sample = one.rows_per_sample,
-                    .sums = sums.numbers()});
+    list.push_back(
+        {.info = one.info, .rows_per_sample = one.rows_per_sample, .sums = sums.numbers()});
   }
   return list;
 }
@@ -521,10 +517,6 @@ void PosteriorAxis::resume_from(const Snapshot& trained, double t) {
     }
   }
   tally_ = {};
-}
-
-const DynamicsAxis& PosteriorAxis::dynamics_axis() const {
-  throw InputError("learner", "'posterior' has no mechanisms of a committee");
 }
 
 void PosteriorAxis::visit(Archive& archive) {

@@ -80,7 +80,6 @@ class PosteriorAxis final : public ModelAxis {
   /// deviation of the errors above and below: 2,000 rows.
   void resume_from(const Snapshot& trained, double t) override;
   const AxisScaling* scaling() const override { return has_scale_ ? &scaling_ : nullptr; }
-  const DynamicsAxis& dynamics_axis() const override;  ///< Throws InputError.
 
   void visit(Archive& archive) override;
 

@@ -11,7 +11,7 @@
 namespace kelpie {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLearners{"committee", "svr", "posterior"};
+constexpr std::array<std::string_view, 2> kLearners{"posterior", "svr"};
 constexpr std::array<std::string_view, 2> kScalings{"full", "diagonal"};
 constexpr std::array<std::string_view, 3> kPresets{"default", "small", "paper"};
 constexpr std::size_t kPlaneAxes = 3;  // surge, sway, yaw
@@ -22,9 +22,8 @@ constexpr IdleCondition kWithGivenScale{.with = kGivenScale};
 
 constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
     {"learner",
-     "who learns an axis: committee (several learners, each believed as it foretells what lies "
-     "ahead), svr (the paper's learner alone), posterior (one Bayesian regression of terms and "
-     "kernels: docs/method/posterior.md)",
+     "who learns an axis: posterior (one Bayesian regression of terms and kernels, beside the "
+     "paper's learner: docs/method/posterior.md), svr (the paper's learner alone)",
      choice_of<&SharedSettings::learner, SharedSettings>(kLearners),
      {},
      kEssential},
@@ -32,7 +31,8 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      "Σ of eq. (6): the inputs' full covariance, or its diagonal",
      choice_of<&SharedSettings::scaling, SharedSettings>(kScalings),
      {},
-     kScale},
+     kScale,
+     {.with = "learner", .values = "posterior"}},
     {"terms",
      "φ of the kernel κ_SE + fine κ_SE^32 + λ φᵀφ': a set by name, or formulas over the columns "
      "(docs/method/physics.md)",
@@ -49,34 +49,36 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
          "auto (by name: u, surge, Vx, twist.linear.x, …), none, or columns separated by commas"},
      {},
      kEssential},
-    {"track",
-     "the scale is taken anew when samples have outgrown it by this factor, and samples far beyond "
-     "it are turned away; 0: neither",
-     &SharedSettings::track,
-     {.low = 0.0, .high = 1e6},
-     kScale,
-     kWithGivenScale},
     {"coverage",
      "share of samples that the interval around a prediction holds (docs/method/uncertainty.md)",
      &SharedSettings::coverage,
      {.low = 0.5, .high = 0.99},
      kEssential},
     {"warmup",
-     "how many first samples the scale is taken from, Σ and the target's",
+     "how many first samples the scale of learner = svr is taken from, Σ and the target's",
      &SharedSettings::warmup,
      {.low = 2.0, .high = 1e6},
      kEssential,
      kWithGivenScale},
 });
 
-// Of the committee and the paper's learner, which `learner = posterior` has no use for.
-constexpr std::array<std::string_view, 3> kIdleInPosterior{"scaling", "track", "warmup"};
-
 // Settings of older files, and what to write instead.
 constexpr std::array kRemoved = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"s",
      "the weight of κ_SE is always 1 now; leave out s = 1; for any other s write fine/s, lambda/s "
      "and c·s instead of fine, lambda and c (for s = 0 take a small s, such as 0.001)"},
+    {"track", "the scale of learner = svr stays as found in the first samples; leave track out"},
+});
+
+// Values of older files, and those that took their place in version 2.0.0 (CHANGELOG.md).
+struct RemovedValue {
+  std::string_view setting;
+  std::string_view value;
+  std::string_view instead;
+};
+constexpr std::array kRemovedValues = std::to_array<RemovedValue>({
+    {"learner", "committee", "posterior"},
+    {"adapt", "challenger", "follow"},
 });
 
 ModelSettings default_preset(std::size_t axes) {
@@ -85,7 +87,7 @@ ModelSettings default_preset(std::size_t axes) {
   return settings;
 }
 
-// A buffer that fits a microcomputer; the long memories scale with it (Committee).
+// A buffer that fits a microcomputer.
 ModelSettings small_preset(std::size_t axes) {
   ModelSettings settings;
   settings.preset = "small";
@@ -109,7 +111,6 @@ ModelSettings paper_preset(std::size_t axes) {
   settings.shared.warmup = 200;
   settings.shared.scaling = ScalingKind::full;
   settings.shared.terms = "none";
-  settings.shared.track = 0.0;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     OnlineSvrSettings& one = settings.axes.emplace_back();
     one.storage = Storage::float64;
@@ -185,6 +186,17 @@ bool removed_setting(std::string_view name) {
   return std::ranges::any_of(kRemoved, [name](const auto& old) { return old.first == name; });
 }
 
+std::string present_value(std::string_view name, std::string_view text) {
+  for (const auto& [setting, value, instead] : kRemovedValues) {
+    if (setting == name) {
+      std::vector<std::string> values = split_text(text, ',');  // one per axis
+      std::ranges::replace(values, std::string(value), std::string(instead));
+      return join_text(values, ",");
+    }
+  }
+  return std::string(text);
+}
+
 std::string unknown_setting(std::string_view name) {
   for (const auto& [removed, instead] : kRemoved) {
     if (removed == name) {
@@ -212,6 +224,11 @@ ModelSettings ModelSettings::from_preset(std::string_view preset, std::size_t ax
 }
 
 void ModelSettings::assign(std::string_view name, std::string_view text) {
+  for (const auto& [setting, value, instead] : kRemovedValues) {
+    require(setting != name || value != trimmed(text), name,
+            "'" + std::string(value) + "' was removed in version 2.0.0 (CHANGELOG.md); write " +
+                std::string(instead));
+  }
   if (const auto* const field = find(shared_fields(), name)) {
     field->assign(shared, text);
   } else if (const auto* const axis_field = find(online_svr_fields(), name)) {
@@ -254,14 +271,12 @@ std::vector<std::string> ModelSettings::notes(std::span<const std::string> names
   std::vector<std::string> notes;
   for_each_field([&](const auto& field) {
     const IdleCondition& idle = field.idle;
-    if (shared.learner == LearnerKind::posterior &&
-        std::ranges::count(kIdleInPosterior, field.name) > 0 &&
-        std::ranges::count(names, field.name) > 0) {
+    const bool asked = std::ranges::count(names, field.name) > 0;
+    if (asked && idle.with == kGivenScale && shared.learner == LearnerKind::posterior) {
       notes.push_back("setting " + std::string(field.name) +
                       " has no effect with learner = posterior");
       return;
     }
-    const bool asked = std::ranges::count(names, field.name) > 0;
     const std::string& value = value_of.find(field.name)->second;
     if (asked && value != "0" && value != "none" && !idle.with.empty() && no_effect(idle)) {
       const auto other = value_of.find(idle.with);

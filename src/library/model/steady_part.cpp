@@ -317,7 +317,7 @@ void SteadyPart::amplify(std::span<const CommandGain> gains) {
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     scratch_[k] = 1.0 / term_gain(terms_, k, gains);
   }
-  fit_.rescale(scratch_, 1.0);
+  fit_.rescale(scratch_);
 }
 
 // As a number of rows: the variance of a row's error over that of what a product makes up in the

@@ -11,63 +11,21 @@ namespace kelpie {
 inline constexpr struct ModelTuning {
   double almost = 0.999;  ///< of a step, which is over: stamps are rounded, by 0.2 µs since 1970
 
-  /// The scale of an axis (model/scale_tracker.hpp, model/scaled.hpp).
+  /// The scale of the paper's learner (model/first_scale.hpp).
   struct Scale {
-    std::int64_t look_every = 64;   ///< samples between two comparisons with the data; by hand
     std::size_t remembered = 1000;  ///< samples; later samples fade earlier ones; by hand
-    std::size_t assumed = 250;      ///< samples behind the scale of a trained model; by hand
-    double far = 10.0;              ///< standard deviations of an implausible sample; by hand
+    double far = 10.0;              ///< spreads of an implausible sample; by hand
     double beyond = 3.0;            ///< largest magnitudes of an implausible sample: a command at
                                     ///< a third of its range may take the whole
-    double held = 0.1;            ///< of the largest magnitude, deviation of an input that is held
-    double extreme = 3.0;         ///< standard deviations: largest magnitude of a given scale
-    std::int64_t held_look = 16;  ///< held-back samples between two looks for a scale; by hand
-    std::size_t held_slice = 8;   ///< held-back samples learned per update; by hand
+    std::int64_t held_look = 16;    ///< held-back samples between two looks for a scale; by hand
+    std::size_t held_slice = 8;     ///< held-back samples learned per update; by hand
   } scale;
 
-  /// Probation of scales (model/guarded_axis.hpp). Seconds follow from garbage of sensors, which
-  /// lasts up to 30 s, and from a vehicle that sets off, which is believed within 10 s; the other
-  /// values: by hand.
-  struct Guard {
-    int early_samples = 10;          ///< of a scale until `warmup` samples give one; by hand
-    double believed_s = 0.5;         ///< s of implausible samples before a candidate learns them
-    std::int64_t least_refused = 4;  ///< samples, the same where rows are rare
-    double share_s = 30.0;           ///< s, memory of the share of time with implausible samples
-    double confirmed_share = 0.7;    ///< reached after 36 s of implausible samples alone
-    double least_explained = 20.0;   ///< samples before a candidate can convince
-    double least_rejected = 100.0;   ///< samples that a former axis has to explain; by hand
-    double convinced_s = 4.0;        ///< s of probation before a candidate can convince
-    double stale_s = 60.0;   ///< s without doubtful samples: a candidate is copied anew; by hand
-    double moving = 0.3;     ///< standard deviations: targets that move less are no evidence
-    double explained = 0.5;  ///< of the variance, convinces
-    double clip = 3.0;       ///< largest error counted [standard deviations]
-    double look_s = 5.0;     ///< s between two looks for a scale too large
-    double held_s = 30.0;    ///< s before an input counts as held: as long as garbage lasts
-    double young_s = 90.0;   ///< s of looks after the first sample
-    double confirmed_young_s = 60.0;  ///< s of looks after a candidate took over
-    double tiny = 0.12;               ///< standard deviations of the later half: a scale too large
-    double near_zero = 0.36;          ///< standard deviations from 0, all of this half: by hand
-    double alike = 5.0;           ///< standard deviations of the later half: earlier samples alike
-    double recent = 0.12;         ///< rate of the share of implausible samples, per sample
-    double company = 0.25;        ///< this share, three in succession, makes all samples doubtful
-    std::size_t probes = 32;      ///< samples of the half that the axis predicts
-    std::size_t least_half = 10;  ///< samples in the half that is looked at
-    double unexplained = 0.85;    ///< of the mean deviation, of a scale too large
-    double worse = 2.0;           ///< times the deviations from the mean: no model; by hand
-    std::size_t per_update = 3;   ///< samples that a new axis learns per update
-    std::size_t slices = 10;      ///< of a change of scale that samples wait for, per update
-  } guard;
-
-  /// The second opinion on implausible targets (model/expected_target.hpp).
-  struct Expected {
-    double prior = 0.1;               ///< samples per coefficient; by hand
-    double huber = 3.0;               ///< usual errors of full weight; by hand
-    std::size_t least_errors = 30;    ///< errors before the usual error is known; by hand
-    std::size_t error_every = 16;     ///< errors between two medians; by hand
-    std::int64_t rows_per_term = 10;  ///< before a target is expected; by hand
-    double unexpected = 0.5;          ///< of the distance from the mean, of an expected target: by
-                                      ///< hand, simulated plants hardly differ at 0.25
-  } expected;
+  /// A vehicle that sets off (model/first_moves.hpp).
+  struct FirstMoves {
+    double far = 10.0;       ///< standard deviations of a command that moves; by hand
+    double explained = 0.5;  ///< of the variance, of a vehicle that is known; by hand
+  } first_moves;
 
   /// The equations of motion of a vehicle (model/steady_part.hpp).
   struct Steady {
@@ -88,7 +46,7 @@ inline constexpr struct ModelTuning {
     double before_s = 25.0;           ///< s, weight of steps before a change; method/open_loop.md
   } steady;
 
-  /// ChangeMonitor; docs/method/committee.md, Change: a prototype on training rows of 24 streams.
+  /// ChangeMonitor; docs/method/posterior.md, Changes: a prototype on training rows of 24 streams.
   struct Change {
     double step_s = 0.24;            ///< s between two rows that count: from 0.2, 0.24
     std::size_t most_terms = 64;     ///< beyond, terms without products of commands, for the cost
@@ -123,6 +81,8 @@ inline constexpr struct ModelTuning {
     double settle_s = 60.0;          ///< s in which coefficients follow a change; by hand
     double move_every_s = 1.0;       ///< s between two steps; by hand
     double probation_s = 120.0;      ///< s in which a change may be withdrawn; by hand
+    double huber = 2.5;              ///< usual errors of full weight; by hand
+    double kept = 300.0;             ///< independent samples behind the weights, at a change
   } change;
 
   /// Practice of rollouts (model/open_loop_practice.hpp).

@@ -36,10 +36,11 @@ Mixture::Mixture(const SvrFunction& posterior, const OnlineSvrSettings& settings
       shares_(kPosterior.first_shares),
       seen_(kOnline.range.margin),
       seen_terms_(posterior.kernel().terms()) {
-  mix_.limits.caution = kOnline.members.caution;
+  mix_.limits.caution = kOnline.shares.caution;
   for (const FunctionMix::Member& member : mix_.members) {
     frozen_.push_back(member.function);
   }
+  limit();
   serve();
 }
 
@@ -145,7 +146,7 @@ void Mixture::tell_anew(std::span<const double> step) {
   move_paper([&](std::span<double> sample, double& y) {
     y += dot(step.first(step.size() - 1), sample.subspan(inputs)) + step.back();
   });
-  shares_.halve_evidence();
+  shares_.start_block();
   serve();
 }
 

@@ -7,6 +7,7 @@
 #include "kelpie/core/archive.hpp"
 #include "kelpie/svr/online_svr.hpp"
 #include "kelpie/svr/settings.hpp"
+#include "learner/sample_map.hpp"
 #include "svr/past_model.hpp"
 #include "svr/svr_function.hpp"
 

@@ -279,21 +279,6 @@ bool OnlineSvr::remove(Decision& decision, std::size_t i, int Decision::*count) 
   return true;
 }
 
-void OnlineSvr::rescale(const SampleMap& map) {
-  std::array<double, kMostInputs + kMostTerms> nowhere{};
-  map(std::span(nowhere).first(nodes_->buffer.samples().dimension()), progress_.mean);
-  nodes_->buffer.rescale(map);
-  nodes_->filter.clear();
-  nodes_->leaving.reset();
-  progress_.waiting = 0;
-  progress_.unfinished =
-      nodes_->buffer.size() == settings_.places();  // no sample has left for the next yet
-  progress_.pruned_weight = false;
-  nodes_->solved = solver().restart(nodes_->buffer.problem());
-  Decision decision;
-  publish(decision);
-}
-
 void OnlineSvr::relearn(const PastModel& past, double now) {
   clear();
   // Under a spent budget the solver would never come to an end.
@@ -304,14 +289,14 @@ void OnlineSvr::relearn(const PastModel& past, double now) {
   nodes_->budget = budget;
 }
 
-bool OnlineSvr::relearn_slice(const PastModel& past, double now, const SampleMap& map) {
+bool OnlineSvr::relearn_slice(const PastModel& past, double now) {
   if (progress_.relearned) {
     return release_slice();
   }
   const std::size_t samples = std::min(past.size(), settings_.places() - 1);
   if (nodes_->buffer.size() < samples) {
-    collect_slice(past, samples, now, map);
-    if (nodes_->buffer.size() == samples && !map) {
+    collect_slice(past, samples, now);
+    if (nodes_->buffer.size() == samples) {
       warm_start(past.function);
     }
     return false;
@@ -369,8 +354,7 @@ void OnlineSvr::warm_start(const SvrFunction& function) {
   }
 }
 
-void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double now,
-                              const SampleMap& map) {
+void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double now) {
   std::array<double, kMostInputs + kMostTerms> place{};
   const std::span<double> z = std::span(place).first(nodes_->buffer.samples().dimension());
   const double latest = past.latest_s();
@@ -379,10 +363,7 @@ void OnlineSvr::collect_slice(const PastModel& past, std::size_t samples, double
   for (std::size_t i = nodes_->buffer.size();
        i < samples && work < kSvr.slice_of_rows && part.spend(kSvr.element_work * i); ++i) {
     past.samples.get(i, z);
-    double y = past.targets[i];
-    if (map) {
-      map(z, y);
-    }
+    const double y = past.targets[i];
     nodes_->buffer.compare(z);
     nodes_->buffer.collect(z, y, now + (past.times_s[i] - latest));
     progress_.mean += (y - progress_.mean) / static_cast<double>(++progress_.valid_samples);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
-#include "svr/tuning.hpp"
 
 namespace kelpie {
 
@@ -69,29 +68,6 @@ void PastModel::visit(Archive& archive) {
   archive.numbers(std::span(targets).first(size()));
   archive.numbers(std::span(times_s).first(size()));
   archive.part("function", function);
-}
-
-bool PastModel::agrees(const SvrFunction& other, std::span<double> x) const {
-  const std::size_t count = std::min(size(), kSvr.compared);
-  double sum = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    samples.get(k * size() / count, x);
-    sum += std::abs(function.without_short_range(x) - other.without_short_range(x));
-  }
-  return sum <= info.usual_error * static_cast<double>(count);
-}
-
-bool PastModel::explained_by(const SvrFunction& other, std::span<double> x) const {
-  const std::size_t count = std::min(size(), kSvr.compared);
-  double error = 0.0;
-  double own = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = k * size() / count;
-    samples.get(i, x);
-    error += std::abs(targets[i] - other.without_short_range(x));
-    own += std::abs(targets[i] - function.without_short_range(x));
-  }
-  return error <= kSvr.alike * std::max(own, info.usual_error * static_cast<double>(count));
 }
 
 }  // namespace kelpie

@@ -35,12 +35,6 @@ struct PastModel {
   std::size_t size() const { return samples.size(); }
   double latest_s() const;  ///< The latest time of a sample [s]; 0 without samples. Cost O(n).
 
-  /// Whether another function agrees with this model at 64 of its samples, without the short-range
-  /// parts: mean difference of at most a usual error. `x`: scratch of a sample's size.
-  bool agrees(const SvrFunction& other, std::span<double> x) const;
-  /// Whether another function fits these samples with at most 1.5 times this model's error.
-  bool explained_by(const SvrFunction& other, std::span<double> x) const;
-
   void visit(Archive& archive);  ///< core/archive.hpp
 
   /// Memory of a past model in bytes.

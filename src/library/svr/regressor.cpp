@@ -8,7 +8,6 @@ void Status::visit(Archive& archive) {
   archive.whole(support_vectors);
   archive.number(kkt_gap);
   archive.flag(ready);
-  archive.flag(early);
   archive.part("tally", tally);
 }
 

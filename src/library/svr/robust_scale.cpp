@@ -17,11 +17,6 @@ void RobustScale::add(double error) {
   }
 }
 
-double RobustScale::huber_weight(double error, double usual_errors) const {
-  const double limit = usual_errors * value_;
-  return std::abs(error) > limit ? limit / std::abs(error) : 1.0;
-}
-
 void RobustScale::clear() {
   count_ = 0;
   value_ = std::numeric_limits<double>::infinity();

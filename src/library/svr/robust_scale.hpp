@@ -22,10 +22,6 @@ class RobustScale {
   double value() const { return value_; }
   std::size_t count() const { return count_; }  ///< errors added
 
-  /// Huber's weight of an error (1964): 1 up to a limit in usual errors, then limit / |error|. 1
-  /// while the usual error is unknown.
-  double huber_weight(double error, double usual_errors) const;
-
   void clear();  ///< Forgets the errors.
 
   void visit(Archive& archive);  ///< core/archive.hpp

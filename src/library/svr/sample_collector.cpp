@@ -24,16 +24,14 @@ SampleCollector::SampleCollector(std::size_t inputs, std::size_t terms,
       time_(settings.places()),
       arrival_(settings.places()),
       similarity_(settings.places()),
-      row_(settings.places()),
-      target_(settings.places()),
-      sample_(kernel_.dimension()) {}
+      row_(settings.places()) {}
 
 std::size_t SampleCollector::bytes(std::size_t inputs, std::size_t terms,
                                    const OnlineSvrSettings& settings) {
   const std::size_t places = settings.places();
   return SampleStore::bytes(inputs + terms, places) + DualProblem::bytes(places, settings.storage) +
-         KernelDensity::bytes(inputs, places) + (inputs + terms) * sizeof(double) +
-         places * (4 * sizeof(double) + sizeof(std::uint64_t));
+         KernelDensity::bytes(inputs, places) +
+         places * (3 * sizeof(double) + sizeof(std::uint64_t));
 }
 
 void SampleCollector::compare(std::span<const double> x) {
@@ -55,24 +53,6 @@ void SampleCollector::clear() {
   problem_.clear();
   samples_.clear();
   next_arrival_ = 0;
-}
-
-void SampleCollector::rescale(const SampleMap& map) {
-  const std::size_t n = size();
-  std::ranges::copy(problem_.targets(), target_.begin());
-  for (std::size_t i = 0; i < n; ++i) {
-    samples_.get(i, sample_);
-    map(sample_, target_[i]);
-    samples_.set(i, sample_);
-  }
-  density_.clear();
-  problem_.clear();
-  for (std::size_t i = 0; i < n; ++i) {
-    samples_.get(i, sample_);
-    compare(sample_);
-    density_.add(kernel_.inputs_of(sample_), samples_);
-    problem_.add(std::span(row_).first(i), kernel_.self(sample_) + ridge_, target_[i]);
-  }
 }
 
 void SampleCollector::visit(Archive& archive) {

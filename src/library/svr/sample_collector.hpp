@@ -3,11 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
-#include "kelpie/svr/online_svr.hpp"
 #include "kelpie/svr/settings.hpp"
 #include "svr/density.hpp"
 #include "svr/dual_problem.hpp"
@@ -15,14 +13,6 @@
 #include "svr/sample_store.hpp"
 
 namespace kelpie {
-
-/// Progress of a learner's move to another scale.
-enum class RescaleStatus : std::uint8_t {
-  refused,    ///< impossible; samples stay in the former scale
-  under_way,  ///< unfinished; samples stay in their present scale
-  switched,   ///< unfinished; samples arrive in the new scale from now on
-  done,       ///< finished
-};
 
 /// The sample collector: the buffer with the data of its samples. Has a place more than the
 /// buffer's size, for the sample in learning. Allocates in the constructor only.
@@ -40,8 +30,7 @@ class SampleCollector {
   double time(std::size_t i) const { return time_[i]; }  ///< Time of a sample [s].
   /// Arrivals of the samples, counted from 0.
   std::span<const std::uint64_t> arrivals() const { return {arrival_.data(), size()}; }
-  std::uint64_t next_arrival() const { return next_arrival_; }  ///< of the next sample
-  const KernelDensity& density() const { return density_; }     ///< eq. (8)
+  const KernelDensity& density() const { return density_; }  ///< eq. (8)
 
   /// Compares a sample with the buffer, for similarity() and row(). Cost O(n d).
   void compare(std::span<const double> x);
@@ -55,10 +44,6 @@ class SampleCollector {
   void remove(std::size_t i);
 
   void clear();  ///< Removes every sample.
-
-  /// Maps every sample and recomputes the buffer's data; weights are 0 afterwards. Cost O(n² d).
-  /// Allocates nothing.
-  void rescale(const SampleMap& map);
 
   void visit(Archive& archive);  ///< core/archive.hpp
 
@@ -76,8 +61,6 @@ class SampleCollector {
   std::vector<std::uint64_t> arrival_;
   std::vector<double> similarity_;
   std::vector<double> row_;
-  std::vector<double> target_;  ///< scratch of rescale()
-  std::vector<double> sample_;
   std::uint64_t next_arrival_ = 0;
 };
 

@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 2> kSolvers{"path", "smo"};
 constexpr std::array<std::string_view, 2> kStorages{"double", "float"};
 constexpr std::array<std::string_view, 3> kOutlierRules{"none", "iqr", "robust"};
 constexpr std::array<std::string_view, 3> kForgetRules{"fifo", "paper", "age"};
-constexpr std::array<std::string_view, 2> kAdaptRules{"none", "challenger"};
+constexpr std::array<std::string_view, 2> kAdaptRules{"none", "follow"};
 
 // Beyond the upper end lies no use, and products of settings overflow.
 constexpr double kMost = 1e9;
@@ -90,10 +90,13 @@ constexpr std::array kSettings = std::to_array<Setting<S>>({
      {.low = 1.0, .high = 20'000.0},
      kBuffer},
     {"adapt",
-     "when errors grow: none, challenger (one without a past is tried, and takes over if better)",
+     "when the vehicle changes: none, follow (what was learned becomes what would have been "
+     "learned "
+     "of the changed vehicle)",
      choice_of<&S::adapt, S>(kAdaptRules),
      {},
-     kEssential},
+     kEssential,
+     {.with = "learner", .values = "svr"}},
     {"memory",
      "how many past models are kept, each to be taken up again when its vehicle returns; 0: none",
      &S::memory,

@@ -61,11 +61,8 @@ void SvrFunction::visit(Archive& archive) {
 }
 
 double SvrFunction::operator()(std::span<const double> x) const {
-  return without_short_range(x) + kernel_.fine_expansion(x, samples_, beta());
-}
-
-double SvrFunction::without_short_range(std::span<const double> x) const {
-  return bias_ + dot(kernel_.terms_of(x), term_weights_) + kernel_.expansion(x, samples_, beta());
+  return bias_ + dot(kernel_.terms_of(x), term_weights_) + kernel_.expansion(x, samples_, beta()) +
+         kernel_.fine_expansion(x, samples_, beta());
 }
 
 double SvrFunction::with_gradient(std::span<const double> x, std::span<double> gradient) const {

@@ -43,9 +43,6 @@ class SvrFunction {
   /// many threads.
   double operator()(std::span<const double> x) const;
 
-  /// f(x) without the short-range part fine κ_SE^32. Cost and conditions as operator().
-  double without_short_range(std::span<const double> x) const;
-
   /// f(x), equal to rounding, and its gradient by z and φ. Requires finite x, room for a value per
   /// dimension, and at most SquaredExponential::kMostDimensions inputs. Cost: one to two times
   /// operator(). Conditions as operator().

@@ -45,10 +45,6 @@ struct SvrTuning {
   std::size_t outlier_least = 64;      ///< errors before s is known: by hand
   std::size_t outlier_every = 8;       ///< errors between two medians: by hand
   std::size_t quartiles_least = 4;     ///< support vectors of `iqr`
-
-  /// PastModel.
-  std::size_t compared = 64;  ///< samples by which two models are compared
-  double alike = 1.5;         ///< error ratio of two models of one vehicle
 };
 
 inline constexpr SvrTuning kSvr{};

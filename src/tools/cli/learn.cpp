@@ -31,6 +31,7 @@
 #include "model/snapshot.hpp"
 #include "motion/signal_names.hpp"
 #include "motion/states.hpp"
+#include "posterior/tuning.hpp"
 #include "report/html.hpp"
 #include "report/table.hpp"
 #include "report/verdict.hpp"
@@ -188,6 +189,8 @@ DynamicsModel first_model(const LearnArguments& options, const format::Origin* f
   if (options.scales != "first" && options.scales != "train") {
     plan.given_scales = saved_scales(options.scales, plan.data);
   }
+  require(options.scales == "first" || plan.settings.shared.learner == LearnerKind::svr, "--scales",
+          "'learner = posterior' takes no scale; remove --scales, or add --set learner=svr");
   DynamicsModel model = from == nullptr ? study::make_model(plan)
                         : resumes       ? from->fresh(plan.settings)
                                         : from->model(plan.settings, plan.data.times_s.front());
@@ -345,16 +348,19 @@ Answer answer_of(const LearnArguments& options, const study::StreamResult& resul
 
 [[noreturn]] void refuse_without_model(const study::LearnPlan& plan) {
   const std::size_t rows = plan.split.training.size();
-  const std::int64_t least = plan.settings.shared.warmup;
+  const bool has_scale = plan.settings.shared.learner == LearnerKind::svr;
+  const int least =
+      has_scale ? plan.settings.shared.warmup : static_cast<int>(kPosterior.first_rows);
+  const char* const reason = has_scale ? " (setting 'warmup')" : "";
   throw InputError(
       {.file = plan.data.source},
       std::cmp_less(rows, least)
-          ? fmt::format("nothing was learned: {} training rows are too few for a scale, which "
-                        "takes {} (setting 'warmup')",
-                        rows, least)
-          : fmt::format("nothing was learned: fewer than {} (setting 'warmup') of {} training rows "
-                        "have inputs that move and targets that can be believed",
-                        least, rows));
+          ? fmt::format("nothing was learned: {} training rows are too few for a model, which "
+                        "takes {}{}",
+                        rows, least, reason)
+          : fmt::format("nothing was learned: fewer than {}{} of {} training rows have inputs that "
+                        "move and targets that can be believed",
+                        least, reason, rows));
 }
 
 void learn(const LearnArguments& options) {

@@ -19,27 +19,18 @@ using file::Json;
 using file::JsonNode;
 
 constexpr const char* kMemoryFormat = "kelpie-memory";
-constexpr int kSamplesVersion = 1, kSumsVersion = 2;
+constexpr int kSamplesVersion = 1, kMemoryVersion = 2;
 constexpr double kMostCount = 9e15;  // a double counts up to there
 
-Json model_object(const StoredPastModel& model, std::size_t inputs) {
-  Json object{{"number", model.info.number},   {"from_s", model.info.from_s},
-              {"until_s", model.info.until_s}, {"samples", model.info.samples},
-              {"recalls", model.info.recalls}, {"usual_error", model.info.usual_error}};
-  if (!model.sums.empty()) {
-    object["rows_per_sample"] = model.rows_per_sample;
-    object["sums"] = model.sums;
-    return object;
-  }
-  Json rows = Json::array();
-  for (std::size_t i = 0; i < model.targets.size(); ++i) {
-    std::vector<double> row{model.times_s[i], model.targets[i]};
-    const auto first = model.inputs.begin() + static_cast<std::ptrdiff_t>(i * inputs);
-    row.insert(row.end(), first, first + static_cast<std::ptrdiff_t>(inputs));
-    rows.push_back(row);
-  }
-  object["rows"] = rows;
-  return object;
+Json model_object(const StoredPastModel& model) {
+  return {{"number", model.info.number},
+          {"from_s", model.info.from_s},
+          {"until_s", model.info.until_s},
+          {"samples", model.info.samples},
+          {"recalls", model.info.recalls},
+          {"usual_error", model.info.usual_error},
+          {"rows_per_sample", model.rows_per_sample},
+          {"sums", model.sums}};
 }
 
 template <typename Count>
@@ -50,8 +41,8 @@ Count whole(const JsonNode& node, double least) {
   return static_cast<Count>(value);
 }
 
-// `terms`: of sums, with the constant; 0 for samples.
-StoredPastModel read_past(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+// `terms`: with the constant.
+StoredPastModel read_past(const JsonNode& node, std::size_t terms) {
   StoredPastModel model;
   model.info = {.number = whole<std::int64_t>(node["number"], 1),
                 .from_s = node["from_s"].number(),
@@ -62,39 +53,24 @@ StoredPastModel read_past(const JsonNode& node, std::size_t inputs, std::size_t 
                 .earlier = 0,
                 .usual_error = node["usual_error"].positive()};
   model.info.earlier = model.info.samples;
-  if (terms > 0) {
-    model.rows_per_sample = node["rows_per_sample"].positive();
-    model.sums = node["sums"].numbers(4 + terms + terms * (terms + 1) / 2);
-    node["sums"].require(model.sums[1] > 0.0 && model.sums[2] > 0.0, "are of no samples");
-    return model;
-  }
-  for (const JsonNode& row : node["rows"].items()) {
-    const std::vector<double> values = row.numbers(inputs + 2);
-    model.times_s.push_back(values[0]);
-    model.targets.push_back(values[1]);
-    model.inputs.insert(model.inputs.end(), values.begin() + 2, values.end());
-  }
-  node["rows"].require(!model.targets.empty(), "needs a row at least");
+  model.rows_per_sample = node["rows_per_sample"].positive();
+  model.sums = node["sums"].numbers(4 + terms + terms * (terms + 1) / 2);
+  node["sums"].require(model.sums[1] > 0.0 && model.sums[2] > 0.0, "are of no samples");
   return model;
 }
 
-AxisMemory read_axis(const JsonNode& node, std::size_t inputs, std::size_t terms) {
+AxisMemory read_axis(const JsonNode& node, std::size_t terms) {
   AxisMemory axis{.target = node["target"].text(), .models = {}};
   std::set<std::int64_t> numbers;
   for (const JsonNode& model : node["models"].items()) {
-    axis.models.push_back(read_past(model, inputs, terms));
+    axis.models.push_back(read_past(model, terms));
     model["number"].require(numbers.insert(axis.models.back().info.number).second,
                             "is that of two models");
   }
   return axis;
 }
 
-std::string kind_of(const PastModelsFile& memory) {
-  return memory.terms.empty() ? "samples, as 'learner = committee' keeps them"
-                              : "sums, as 'learner = posterior' keeps them";
-}
-
-// The same inputs, kind and terms, and the same units wherever both know one.
+// The same inputs and terms, and the same units wherever both know one.
 void require_same_vehicle(const PastModelsFile& memory, const PastModelsFile& log,
                           const std::string& source) {
   if (memory.inputs != log.inputs) {
@@ -102,12 +78,6 @@ void require_same_vehicle(const PastModelsFile& memory, const PastModelsFile& lo
                      "are '" + join_text(memory.inputs, ", ") + "' there, '" +
                          join_text(log.inputs, ", ") +
                          "' in the log: not the same vehicle's memory");
-  }
-  if (memory.terms.empty() != log.terms.empty()) {
-    throw InputError({.file = source, .line = 0, .field = "models"},
-                     "are " + kind_of(memory) + ", and the run needs " + kind_of(log) +
-                         ": give another file, or --set learner=" +
-                         (memory.terms.empty() ? "committee" : "posterior"));
   }
   if (memory.terms != log.terms) {
     throw InputError({.file = source, .line = 0, .field = "terms"},
@@ -136,12 +106,13 @@ std::size_t place_of(const std::string& target, const log::Dataset& data,
 }
 
 PastModelsFile empty_memory(const log::Dataset& data, const ModelSettings& settings) {
-  PastModelsFile memory{.inputs = data.input_names, .units = {}, .axes = {}};
-  if (settings.shared.learner == LearnerKind::posterior) {
-    memory.terms =
-        TermSet::from(settings.shared.terms, data.input_names, data.target_names.size()).texts();
-    memory.terms.insert(memory.terms.begin(), "1");
-  }
+  PastModelsFile memory{
+      .inputs = data.input_names,
+      .units = {},
+      .terms =
+          TermSet::from(settings.shared.terms, data.input_names, data.target_names.size()).texts(),
+      .axes = {}};
+  memory.terms.insert(memory.terms.begin(), "1");
   for (const auto& [column, unit] : data.units) {
     memory.units[column] = unit.text();
   }
@@ -221,32 +192,28 @@ void PastModelsFile::add(const PastModelsFile& run, const ModelSettings& setting
 }
 
 std::string memory_json(const PastModelsFile& memory) {
-  const auto model_json = [&](const StoredPastModel& model) {
-    return model_object(model, memory.inputs.size());
+  const auto axis_json = [](const AxisMemory& axis) {
+    return Json{{"target", axis.target}, {"models", file::list(axis.models, model_object)}};
   };
-  const auto axis_json = [&](const AxisMemory& axis) {
-    return Json{{"target", axis.target}, {"models", file::list(axis.models, model_json)}};
-  };
-  Json json{{"format", kMemoryFormat},
-            {"version", memory.terms.empty() ? kSamplesVersion : kSumsVersion},
-            {"inputs", memory.inputs},
-            {"units", memory.units},
-            {"axes", file::list(memory.axes, axis_json)}};
-  if (!memory.terms.empty()) {
-    json["terms"] = memory.terms;
-  }
-  return file::json_text(json, -1);
+  return file::json_text({{"format", kMemoryFormat},
+                          {"version", kMemoryVersion},
+                          {"inputs", memory.inputs},
+                          {"units", memory.units},
+                          {"axes", file::list(memory.axes, axis_json)},
+                          {"terms", memory.terms}},
+                         -1);
 }
 
 PastModelsFile parse_memory_json(const std::string& text, const std::string& source) {
   const Json json = file::parse_json(text, source);
   const JsonNode root(json, source, "");
-  const bool has_sums = root["version"].number() == kSumsVersion;
-  root.require_format(kMemoryFormat, has_sums ? kSumsVersion : kSamplesVersion);
+  root["version"].require(
+      root["version"].number() != kSamplesVersion,
+      "1 holds the samples of past models, as kelpie 1.x wrote them; kelpie 2.0.0 keeps sums "
+      "(CHANGELOG.md): give the name of a new file");
+  root.require_format(kMemoryFormat, kMemoryVersion);
   PastModelsFile memory;
-  if (has_sums) {
-    memory.terms = root["terms"].names(kMostTerms + 1);
-  }
+  memory.terms = root["terms"].names(kMostTerms + 1);
   memory.inputs = root["inputs"].names(kMostInputs);
   root["units"].require(root["units"].json().is_object(), "is not an object");
   for (const auto& [column, unit] : root["units"].json().items()) {
@@ -254,7 +221,7 @@ PastModelsFile parse_memory_json(const std::string& text, const std::string& sou
   }
   std::set<std::string> targets;
   for (const JsonNode& axis : root["axes"].items()) {
-    memory.axes.push_back(read_axis(axis, memory.inputs.size(), memory.terms.size()));
+    memory.axes.push_back(read_axis(axis, memory.terms.size()));
     axis["target"].require(targets.insert(memory.axes.back().target).second, "is that of two axes");
   }
   return memory;

@@ -25,8 +25,7 @@ struct AxisMemory {
 struct PastModelsFile {
   std::vector<std::string> inputs;
   std::map<std::string, std::string> units;  ///< of inputs and targets, where known
-  /// Of sums of `learner = posterior`, the constant 1 first; empty where models are samples.
-  std::vector<std::string> terms{};
+  std::vector<std::string> terms{};          ///< of the sums, the constant 1 first
   std::vector<AxisMemory> axes;
 
   /// The past models of a model of this log, made with these settings. Allocates.
@@ -36,7 +35,7 @@ struct PastModelsFile {
   std::size_t size() const;  ///< models of every axis together
 
   /// Hands the past models to a model before its first sample. Throws InputError (`source`) with
-  /// the inputs, target or unit that differ from the log, the learner or the terms that differ from
+  /// the inputs, target or unit that differ from the log, the terms that differ from
   /// the settings, or the axis with more models than the settings keep; the model is then
   /// unchanged.
   void give_to(DynamicsModel& model, const log::Dataset& data, const ModelSettings& settings,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "chart/text_table.hpp"
@@ -21,23 +20,6 @@ std::string with_unit(double value, const std::string& unit) {
   return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
-// Smallest, mean and largest of every `stride`-th value from `first` on.
-std::vector<std::string> range_row(const format::PastModelsFile& memory, const std::string& column,
-                                   const std::vector<double>& values, std::size_t first,
-                                   std::size_t stride) {
-  double low = values[first];
-  double high = low;
-  double sum = 0.0;
-  for (std::size_t i = first; i < values.size(); i += stride) {
-    low = std::min(low, values[i]);
-    high = std::max(high, values[i]);
-    sum += values[i];
-  }
-  const double count = static_cast<double>(values.size()) / static_cast<double>(stride);
-  return {column, unit_of(memory, column), fmt::format("{:.4g}", low),
-          fmt::format("{:.4g}", sum / count), fmt::format("{:.4g}", high)};
-}
-
 // Mean and root mean square of each term.
 std::vector<std::vector<std::string>> term_rows(const format::PastModelsFile& memory,
                                                 const StoredPastModel& model) {
@@ -52,7 +34,7 @@ std::vector<std::vector<std::string>> term_rows(const format::PastModelsFile& me
 }
 
 std::size_t samples_of(const StoredPastModel& model) {
-  return model.sums.empty() ? model.targets.size() : static_cast<std::size_t>(model.sums[1]);
+  return static_cast<std::size_t>(model.sums[1]);
 }
 
 }  // namespace
@@ -80,18 +62,8 @@ std::string past_model_table(const format::PastModelsFile& memory, std::string_v
   const std::string target(name.substr(0, name.rfind(':')));
   chart::TextTable table{
       .title = fmt::format("{}: {} samples", name, chart::grouped(samples_of(model))),
-      .head = {"column", "unit", "lowest", "mean", "highest"},
-      .rows = {}};
-  if (model.sums.empty()) {
-    table.rows = {range_row(memory, target, model.targets, 0, 1)};
-  } else {
-    table.head = {"term", "mean", "root mean square"};
-    table.rows = term_rows(memory, model);
-  }
-  for (std::size_t i = 0; model.sums.empty() && i < memory.inputs.size(); ++i) {
-    table.rows.push_back(
-        range_row(memory, memory.inputs[i], model.inputs, i, memory.inputs.size()));
-  }
+      .head = {"term", "mean", "root mean square"},
+      .rows = term_rows(memory, model)};
   const PastModelInfo& info = model.info;
   table.notes = {fmt::format("Its vehicle was first met at {} s and last seen at {} s.",
                              chart::time_text(info.from_s), chart::time_text(info.until_s)),

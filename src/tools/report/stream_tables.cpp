@@ -19,9 +19,9 @@ namespace {
 constexpr std::string_view kDisturbanceNote =
     "With disturbance: kelpie's prediction and the recent error (docs/method/uncertainty.md). ";
 constexpr std::string_view kMemberNote =
-    "By how well each foretold what lay ahead, lately. Learner: the paper's, with the settings. "
-    "Precise and memory: least squares on all samples, with a kernel, for little and for much "
-    "noise. Line: the same without one. Mean: of the targets (docs/method/committee.md).";
+    "By how well each foretold what lay ahead, lately. Posterior: terms and kernels. Terms: the "
+    "same without kernels. Svr: the paper's learner. Mean: of the targets "
+    "(docs/method/posterior.md).";
 constexpr std::string_view kCoverageNote =
     "Held: share of the samples inside the interval that was in force before they were learned. "
     "Lowest: in any 500 samples in a row of one configuration, from its 501st on. Widths are in "
@@ -89,7 +89,7 @@ chart::TextTable baseline_table(const study::StreamResult& result) {
 }
 
 chart::TextTable member_table(const study::StreamResult& result) {
-  chart::TextTable table{"Weights of the committee", {"axis"}, {}, {std::string(kMemberNote)}};
+  chart::TextTable table{"Weights of the members", {"axis"}, {}, {std::string(kMemberNote)}};
   for (const study::AxisResult& axis : result.axes) {
     if (axis.members.empty()) {
       continue;

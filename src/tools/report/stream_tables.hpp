@@ -22,7 +22,7 @@ inline constexpr std::string_view kBaselineNote =
 /// R² of the learned model beside R² of simple predictors.
 chart::TextTable baseline_table(const study::StreamResult& result);
 
-/// The final weights of the members of each committee. No rows where every axis has a single
+/// The final weights of the members of each axis. No rows where every axis has a single
 /// learner.
 chart::TextTable member_table(const study::StreamResult& result);
 

@@ -242,7 +242,7 @@ std::vector<std::string> warning_lines(const study::StreamResult& result) {
   const auto all = [&](auto is_so) {
     return !result.axes.empty() && std::ranges::all_of(result.axes, is_so);
   };
-  if (all([](const study::AxisResult& axis) { return !axis.status.ready || axis.status.early; })) {
+  if (all([](const study::AxisResult& axis) { return !axis.status.ready; })) {
     lines.emplace_back("nothing was learned: the log has too few rows for a scale");
   } else if (all([](const study::AxisResult& axis) { return commands_say_nothing(axis); })) {
     lines.emplace_back(

@@ -23,6 +23,9 @@ std::string LearnPlan::scales_text() const {
   if (!from.empty()) {
     return "as in " + from;
   }
+  if (settings.shared.learner == LearnerKind::posterior) {
+    return "of the samples so far";
+  }
   if (scales == "first") {
     return "first " + std::to_string(settings.shared.warmup) + " training samples";
   }

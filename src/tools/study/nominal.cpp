@@ -103,11 +103,12 @@ class VehicleOnInputs {
   std::vector<std::optional<std::size_t>> inputs_;  // of each thruster
 };
 
-// The member of the terms alone: 'line' in models of version 1.
-const SvrFunction& terms_of(const Snapshot& axis, std::string_view option) {
-  const auto found = std::ranges::find_if(
-      axis.function.members,
-      [](const FunctionMix::Member& one) { return one.name == "terms" || one.name == "line"; });
+// The member without a kernel: of models of kelpie 1.x `line`.
+const SvrFunction& line_of(const Snapshot& axis, std::string_view option) {
+  const auto found =
+      std::ranges::find_if(axis.function.members, [](const FunctionMix::Member& member) {
+        return member.name == "terms" || member.name == "line";
+      });
   require(found != axis.function.members.end(), option,
           "the model has no member 'terms', as a model of learner = svr");
   return found->function;
@@ -115,7 +116,7 @@ const SvrFunction& terms_of(const Snapshot& axis, std::string_view option) {
 
 std::vector<Coefficient> coefficients_of(const TrainedModel& model, const Snapshot& axis,
                                          const TermSet& terms, std::string_view option) {
-  const SvrFunction& line = terms_of(axis, option);
+  const SvrFunction& line = line_of(axis, option);
   const AxisScaling& scaling = axis.scaling;
   const std::vector<std::string> known = terms.texts();
   std::vector<Coefficient> list{

@@ -72,7 +72,7 @@ struct OutliersFound {
 struct AxisResult {
   std::string name;                         ///< the target column
   std::string unit;                         ///< of the target; empty: unknown
-  std::vector<MemberShare> members;         ///< of a committee, at the end
+  std::vector<MemberShare> members;         ///< of the mixture, at the end
   std::vector<TermInfo> terms;              ///< empty without coefficients
   std::vector<ValidationPoint> validation;  ///< the last point is at the end of the stream
   std::vector<StageEnd> stages;

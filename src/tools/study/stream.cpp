@@ -155,7 +155,7 @@ class AxisRun {
     if (decision.outliers > 0 || decision.verdict == Verdict::implausible) {
       result_.outliers.push_back({result_.update_us.size(), data_.times_s[row], target(row)});
     }
-    if (decision.had_model && !decision.early) {  // as the yardsticks, which begin with a scale
+    if (decision.had_model) {
       const Prediction& said = decision.prediction;
       keep(result_.one_step, row, said);
       keep(result_.corrected, row,

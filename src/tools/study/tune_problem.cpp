@@ -11,7 +11,8 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/core/setting.hpp"
 #include "kelpie/motion/term_set.hpp"
-#include "model/guarded_axis.hpp"
+#include "model/model_axis.hpp"
+#include "motion/states.hpp"
 #include "study/training_scales.hpp"
 
 namespace kelpie::study {
@@ -109,8 +110,8 @@ std::unique_ptr<OnlineRegressor> TuneOptions::online_learner(const log::Dataset&
                                                              const ModelSettings& settings) {
   const TermSet terms =
       TermSet::from(settings.shared.terms, data.input_names, data.target_names.size());
-  return std::make_unique<GuardedAxis>(data.input_names.size(), settings.shared,
-                                       settings.axes.front(), terms);
+  return make_axis(data.input_names.size(), settings.shared, settings.axes.front(), terms,
+                   find_states(settings.shared.states, data.input_names, data.target_names.size()));
 }
 
 void TuneOptions::validate() const {

@@ -12,7 +12,8 @@
 
 #include "allocation_count.hpp"
 #include "kelpie/learner/recursive_least_squares.hpp"
-#include "learner/adaptive_svr.hpp"
+#include "kelpie/svr/online_svr.hpp"
+#include "kelpie/svr/resources.hpp"
 #include "learner/streams.hpp"
 #include "saved_state.hpp"
 
@@ -26,7 +27,6 @@ using testing::wandering_stream;
 
 static_assert(noexcept(std::declval<OnlineSvr&>().update({}, 0.0, 0.0)));
 static_assert(noexcept(std::declval<const OnlineSvr&>().predict({})));
-static_assert(noexcept(std::declval<AdaptiveSvr&>().update({}, 0.0, 0.0)));
 
 // All that an update can run into: a full buffer, a vehicle that changes, outliers, duplicates,
 // contradictions, samples that are no numbers.
@@ -124,38 +124,15 @@ TEST(RealTime, ABudgetThatRunsOutAllocatesNothing) {
   }
 }
 
-// Neither finding the change, nor keeping models, nor taking one up again.
-TEST(RealTime, AVehicleThatChangesAndReturnsAllocatesNothing) {
-  KELPIE_NEEDS_ALLOCATION_COUNT();
-  for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
-    OnlineSvrSettings settings = testing::settings_for_plants();
-    settings.solver = solver;
-    std::vector<Sample> stream = wandering_stream(1, 700);
-    for (const int plant : {1, 0}) {
-      const std::vector<Sample> leg =
-          wandering_stream(stream.size(), 700, 0.02, plant, stream.back().t);
-      stream.insert(stream.end(), leg.begin(), leg.end());
-    }
-    AdaptiveSvr learner(2, settings);
-    const std::size_t before = allocations;
-    for (const Sample& sample : stream) {
-      learner.update(sample.z, sample.y, sample.t);
-    }
-    EXPECT_EQ(allocations - before, 0U);
-    EXPECT_EQ(learner.status().tally.changes, 2);
-    EXPECT_EQ(learner.status().tally.recalls, 1);
-  }
-}
-
 // A learner that was loaded keeps the capacity it was made with.
 TEST(RealTime, ALoadedLearnerAllocatesNothing) {
   KELPIE_NEEDS_ALLOCATION_COUNT();
   const std::vector<Sample> stream = hard_stream();
-  AdaptiveSvr saved(2, hard_settings());
+  OnlineSvr saved(2, hard_settings());
   for (std::size_t i = 0; i < 30; ++i) {
     saved.update(stream[i].z, stream[i].y, stream[i].t);
   }
-  AdaptiveSvr loaded(2, hard_settings());
+  OnlineSvr loaded(2, hard_settings());
   testing::load(loaded, testing::saved(saved));
   const std::size_t before = allocations;
   for (std::size_t i = 30; i < stream.size(); ++i) {

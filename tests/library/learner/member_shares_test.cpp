@@ -91,7 +91,7 @@ TEST(MemberShares, WhatIsNoNumberIsNoBetterThanTheWorst) {
 TEST(MemberShares, ABlockOfMembersThatAreNoMoreSaysNothing) {
   MemberShares shares(kAlike);
   score(shares, {2.0, 0.1, 0.1}, 15);
-  shares.halve_evidence();
+  shares.start_block();
   score(shares, {0.1, 0.1, 0.1}, 20);
   EXPECT_DOUBLE_EQ(shares.shares()[0], shares.shares()[1]);
 }
@@ -125,20 +125,8 @@ TEST(MemberShares, RareManoeuvresDecide) {
   EXPECT_GT(shares.shares()[1], 0.7);
 }
 
-// Where all learn noise, the last member, the mean, gets the shares of the others.
-TEST(MemberShares, WhatNeverComesTrueCountsLittle) {
-  MemberShares shares(kAlike);
-  for (int i = 0; i < 400; ++i) {
-    shares.calibrate(i % 2 == 0 ? 0.5 : -0.5, 0.0, i % 3 == 0 ? 1.0 : -1.0);
-    shares.score(std::array<double, 3>{1.0, 1.0, 1.0});
-  }
-  EXPECT_GT(shares.shares()[2], 0.85);
-  EXPECT_GT(shares.shares()[0], 0.0);
-  EXPECT_NEAR(std::accumulate(shares.shares().begin(), shares.shares().end(), 0.0), 1.0, 1e-12);
-}
-
 // Discounted losses of the shares and of the members, and the bound of their difference
-// (docs/method/committee.md, Weights), computed from shares and errors alone.
+// (docs/method/posterior.md, Mixture), computed from shares and errors alone.
 class Regret {
  public:
   explicit Regret(std::size_t members) : losses_(members) {}

@@ -8,7 +8,6 @@
 #include "kelpie/core/random.hpp"
 #include "kelpie/svr/regressor.hpp"
 #include "kelpie/svr/settings.hpp"
-#include "svr/sample_collector.hpp"
 
 namespace kelpie::testing {
 
@@ -62,13 +61,6 @@ inline OnlineSvrSettings settings_for_plants() {
   settings.fine = 0.0;
   settings.lambda = 0.0;
   return settings;
-}
-
-/// All of the way to another scale at once.
-template <typename Learner>
-void go_over(Learner& learner, const SampleMap& map) {
-  while (learner.rescale(map) != RescaleStatus::done) {
-  }
 }
 
 /// R² of a learner on some samples.

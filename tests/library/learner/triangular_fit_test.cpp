@@ -117,23 +117,6 @@ TEST(TriangularFit, HoldsATermAtZeroAsManyRowsWould) {
   }
 }
 
-TEST(TriangularFit, HoldsAllTermsWhereExpectedAsManyRowsWould) {
-  const Rows all = rows(300);
-  const Eigen::Vector3d expected(1e-4, 200.0, -1.0);
-  TriangularFit fit(3, 1e-9);
-  for (Eigen::Index i = 0; i < all.y.size(); ++i) {
-    fit.add(phi_of(all, i), all.y[i]);
-  }
-  fit.hold(std::span<const double>(expected.data(), 3), 60.0);
-  const Eigen::MatrixXd information = all.phi.transpose() * all.phi;
-  const Eigen::MatrixXd held = 0.2 * information.diagonal().asDiagonal();
-  const Eigen::VectorXd theta =
-      (information + held).ldlt().solve(all.phi.transpose() * all.y + held * expected);
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    EXPECT_NEAR(fit.theta()[static_cast<std::size_t>(k)] / theta[k], 1.0, 1e-6);
-  }
-}
-
 TEST(TriangularFit, KnowsNothingOfATermThatNeverMoved) {
   TriangularFit fit(2, 0.1);
   for (int i = 0; i < 20; ++i) {
@@ -142,21 +125,6 @@ TEST(TriangularFit, KnowsNothingOfATermThatNeverMoved) {
   EXPECT_EQ(fit.theta()[0], 0.0);
   EXPECT_TRUE(std::isinf(fit.variance(0)));
   EXPECT_NEAR(fit.theta()[1], 5.0, 0.05);
-}
-
-TEST(TriangularFit, ExpectsWhatItIsTold) {
-  const std::vector<double> theta{1.0, -2.0, 5.0};
-  const std::vector<double> information{4.0, 0.25, 0.0};
-  TriangularFit fit(3, 1e-9);
-  fit.add(std::vector{1.0, 1.0, 1.0}, 7.0);
-  fit.set_prior(theta, information);
-  EXPECT_EQ(numbers(fit.theta()), (std::vector{1.0, -2.0, 0.0}));
-  EXPECT_DOUBLE_EQ(fit.variance(0), 0.25);
-  EXPECT_DOUBLE_EQ(fit.variance(1), 4.0);
-  EXPECT_TRUE(std::isinf(fit.variance(2)));
-  fit.add(std::vector{2.0, 0.0, 0.0}, 6.0);  // says 3 with as much information
-  EXPECT_NEAR(fit.theta()[0], 2.0, 1e-6);
-  EXPECT_NEAR(fit.theta()[1], -2.0, 1e-6);
 }
 
 TEST(TriangularFit, ClearedItIsAsNew) {

@@ -58,10 +58,8 @@ class Vehicle {
 };
 
 // The mean R² of three axes and some vehicles on other drives of 300 s, after so many seconds.
-double mean_r_squared_after(double seconds, std::uint64_t vehicles,
-                            std::string_view learner = "committee") {
-  ModelSettings settings = ModelSettings::from_preset("default", 3);
-  settings.assign("learner", std::string(learner));
+double mean_r_squared_after(double seconds, std::uint64_t vehicles) {
+  const ModelSettings settings = ModelSettings::from_preset("default", 3);
   double sum = 0.0;
   for (std::uint64_t seed = 0; seed < vehicles; ++seed) {
     Vehicle vehicle(seed);
@@ -100,11 +98,6 @@ TEST(FirstMinute, AVehicleLinearInItsTermsIsKnown) {
 TEST(MeasuredFirstMinute, SixVehiclesLinearInTheirTermsAreKnown) {
   EXPECT_GT(mean_r_squared_after(30.0, 6), 0.88);
   EXPECT_GT(mean_r_squared_after(60.0, 6), 0.988);
-}
-
-TEST(MeasuredFirstMinute, SixVehiclesAreKnownToThePosterior) {
-  EXPECT_GT(mean_r_squared_after(30.0, 6, "posterior"), 0.90);
-  EXPECT_GT(mean_r_squared_after(60.0, 6, "posterior"), 0.985);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ using testing::PlanarDrive;
 constexpr double kStep = 0.2;  // s
 constexpr std::size_t kBefore = 5'000;
 
-ModelSettings settings(const std::string& adapt = "challenger") {
+ModelSettings settings(const std::string& adapt = "follow") {
   ModelSettings settings = ModelSettings::from_preset("small", 2);
   settings.assign("buffer", "200");
   settings.assign("adapt", adapt);
@@ -126,7 +126,6 @@ std::int64_t changes_of_an_offset(std::uint64_t seeds) {
       }
     }
     const DynamicsModel model = learn(drive, ModelSettings::from_preset("default", 2));
-    EXPECT_GE(model.axis(0).status().tally.suspicions, 1) << seed;
     const std::int64_t changes = model.axis(0).status().tally.changes;
     EXPECT_EQ(model.axis(1).status().tally.changes, changes) << seed;
     EXPECT_GT(r_squared(model, 1, 1.0), 0.3) << seed;

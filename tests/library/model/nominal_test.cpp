@@ -36,7 +36,7 @@ Nominal nominal(double factor = 1.0) {
             {"n2*|n2|", -0.02 * factor}}}};
 }
 
-DynamicsModel new_model(const std::string& learner = "committee") {
+DynamicsModel new_model(const std::string& learner = "posterior") {
   ModelSettings settings = ModelSettings::from_preset("default", 2);
   settings.assign("buffer", "200");
   settings.assign("learner", learner);
@@ -44,7 +44,7 @@ DynamicsModel new_model(const std::string& learner = "committee") {
   return {names.inputs, names.targets, settings};
 }
 
-DynamicsModel model_with(const Nominal& known, const std::string& learner = "committee") {
+DynamicsModel model_with(const Nominal& known, const std::string& learner = "posterior") {
   DynamicsModel model = new_model(learner);
   for (std::size_t axis = 0; axis < known.size(); ++axis) {
     set_nominal(model, axis, known[axis]);

@@ -117,9 +117,7 @@ TEST(OpenLoop, IsThereOnceAndForAllAlsoWhileAChangeIsLearned) {
   drive.drive(1, kBefore, kStep);
   drive.drive(2, 600, kStep, -0.5);  // a propeller put on the wrong way round
   ModelSettings settings = ModelSettings::from_preset("small", 2);
-  settings.assign("learner", "svr");
   settings.assign("buffer", "300");
-  settings.assign("fine", "0");
   DynamicsModel model(drive.inputs, drive.targets, settings);
   RandomStream noise(3, "noise");
   bool changed = false;

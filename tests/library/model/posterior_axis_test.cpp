@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `learner = posterior`, at the door: DynamicsModel.
+// The default learner, at the door: DynamicsModel.
 #include "model/posterior_axis.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,6 @@ constexpr double kStep = 0.25;  // seconds
 
 ModelSettings settings(int buffer = 200) {
   ModelSettings settings = ModelSettings::from_preset("default", 2);
-  settings.assign("learner", "posterior");
   settings.assign("buffer", std::to_string(buffer));
   return settings;
 }
@@ -200,7 +199,6 @@ TEST(PosteriorLearner, TakesTheMemoryThatWasTold) {
   const std::vector<std::string> inputs{"u", "v", "r", "th1", "th2", "th3"};
   const std::vector<std::string> targets{"udot", "vdot", "rdot"};
   ModelSettings three = ModelSettings::from_preset("default", 3);
-  three.assign("learner", "posterior");
   const std::size_t told = DynamicsModel::bytes(inputs, three);
   EXPECT_LT(told, 35'000'000U);
   const std::size_t before = testing::allocated_bytes;
@@ -574,7 +572,7 @@ TEST(PosteriorLearner, KeepsNoMoreVehiclesThanTheSettingAllows) {
 // A model of whichever learner is what the posterior begins with.
 TEST(PosteriorLearner, GoesOnFromATrainedModel) {
   const PlanarDrive drive = noisy_drive(2000, 1.0);
-  for (const char* const learner : {"posterior", "committee", "svr"}) {
+  for (const char* const learner : {"posterior", "svr"}) {
     ModelSettings given = settings(100);
     given.assign("learner", learner);
     DynamicsModel before(drive.inputs, drive.targets, given);
@@ -642,7 +640,7 @@ TEST(PosteriorLearner, RefusesWhatItDoesNotDo) {
   };
   StoredPastModel past = model.past_models(0).front();
   EXPECT_EQ(refusal(past), "");
-  EXPECT_NE(refusal(past, "committee").find("hold no samples"), std::string::npos);
+  EXPECT_NE(refusal(past, "svr").find("which keeps none"), std::string::npos);
   EXPECT_NE(refusal({}).find("number 0 holds 0 sums"), std::string::npos);
   EXPECT_NE(message_of<InputError>([&] {
               new_model().set_past_models(0, std::vector<StoredPastModel>(5, past));
@@ -650,9 +648,9 @@ TEST(PosteriorLearner, RefusesWhatItDoesNotDo) {
             std::string::npos);
   past.sums[4 + model.axis(0).coefficients().size() + 2] = 1e9;  // of the constant and a term
   EXPECT_NE(refusal(past).find("number 1 holds sums of no samples"), std::string::npos);
-  const std::vector<std::string> given{"track", "buffer"};
+  const std::vector<std::string> given{"scaling", "buffer"};
   EXPECT_EQ(settings().notes(given, false),
-            std::vector<std::string>{"setting track has no effect with learner = posterior"});
+            std::vector<std::string>{"setting scaling has no effect with learner = posterior"});
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "kelpie/core/error.hpp"
 #include "kelpie/model/dynamics_model.hpp"
 #include "kelpie/model/trained_model.hpp"
-#include "model/model_axis.hpp"
 #include "model/snapshot.hpp"
 #include "support.hpp"
 #include "vehicle_stream.hpp"
@@ -63,37 +62,8 @@ TEST(GoOnWith, ALearnerAloneSaysTheSameToTheSolversTolerance) {
   }
 }
 
-TEST(GoOnWith, ACommitteeDoesSo) {
-  const Drive drive = testing::drive(1, 900);
-  const TrainedModel before = learned(drive, settings_of("committee")).trained();
-  const DynamicsModel after = DynamicsModel::resume_from(before);
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    EXPECT_LT(difference(before, after, drive, axis), 2e-3) << "axis " << axis;
-    const std::vector<MemberShare> shares = after.axis(axis).members();
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-      EXPECT_NEAR(shares[k].share, before.axes[axis].function.members[k].share, 1e-6);
-    }
-  }
-}
-
-TEST(GoOnWith, ACommitteeOfAVersionWithoutPhysicsKnowsWhatItKnew) {
-  const Drive drive = testing::drive(1, 900);
-  TrainedModel before = learned(drive, settings_of("committee")).trained();
-  for (Snapshot& axis : before.axes) {
-    std::vector<FunctionMix::Member>& members = axis.function.members;
-    const auto physics = std::ranges::find(members, "physics", &FunctionMix::Member::name);
-    ASSERT_NE(physics, members.end());
-    members.front().share += physics->share;
-    members.erase(physics);
-  }
-  const DynamicsModel after = DynamicsModel::resume_from(before);
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    EXPECT_LT(difference(before, after, drive, axis), 0.05) << "axis " << axis;
-  }
-}
-
 TEST(GoOnWith, TheFirstSamplesOfAnotherLogDoNoHarm) {
-  const TrainedModel before = learned(testing::drive(1, 900), settings_of("committee")).trained();
+  const TrainedModel before = learned(testing::drive(1, 900), settings_of("posterior")).trained();
   const Drive next = testing::drive(2, 200);
   DynamicsModel after = DynamicsModel::resume_from(before, 1000.0);
   std::array<double, 2> error{};
@@ -111,18 +81,6 @@ TEST(GoOnWith, TheFirstSamplesOfAnotherLogDoNoHarm) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     EXPECT_LE(error[axis], 1.05 * fixed[axis]) << "axis " << axis;
   }
-}
-
-TEST(GoOnWith, TheScaleIsFollowedOn) {
-  const TrainedModel before = learned(testing::drive(1, 400), settings_of("svr")).trained();
-  DynamicsModel after = DynamicsModel::resume_from(before);
-  Drive larger = testing::drive(2, 600);
-  for (std::size_t i = 0; i < larger.x.size(); ++i) {
-    larger.x[i][1] *= 4.0;
-    after.update(larger.x[i], larger.y[i], kStep * static_cast<double>(i));
-  }
-  EXPECT_LT(after.mechanisms(0).scaling()->input.whitening(1, 1),
-            0.5 * before.axes[0].scaling.input.whitening(1, 1));
 }
 
 TEST(GoOnWith, SettingsWithOtherTermsAreRefused) {

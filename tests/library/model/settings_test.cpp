@@ -52,7 +52,6 @@ TEST(ModelSettings, PresetsKeepToTheirMemory) {
   const auto bytes = [&](const char* preset) {
     return DynamicsModel::bytes(inputs, ModelSettings::from_preset(preset, 3));
   };
-  // Two axes each: one is trusted, one is set aside for a candidate (GuardedAxis).
   EXPECT_LE(bytes("default"), 120'000'000U);
   EXPECT_LE(bytes("small"), 17'000'000U);
 }
@@ -90,6 +89,18 @@ TEST(ModelSettings, ARemovedSettingIsRefusedWithWhatToWriteInstead) {
   EXPECT_NE(refusal.find("fine/s, lambda/s and c·s"), std::string::npos) << refusal;
 }
 
+TEST(ModelSettings, ARemovedValueIsRefusedWithItsSuccessorWhichOlderFilesGet) {
+  ModelSettings settings = ModelSettings::from_preset("default", 2);
+  EXPECT_EQ(message_of<InputError>([&] { settings.assign("learner", "committee"); }),
+            "learner: 'committee' was removed in version 2.0.0 (CHANGELOG.md); write posterior");
+  EXPECT_EQ(message_of<InputError>([&] { settings.assign("adapt", "challenger"); }),
+            "adapt: 'challenger' was removed in version 2.0.0 (CHANGELOG.md); write follow");
+  EXPECT_EQ(present_value("learner", "committee"), "posterior");
+  EXPECT_EQ(present_value("adapt", "challenger,none"), "follow,none");
+  EXPECT_EQ(present_value("states", "committee, u"), "committee, u");
+  EXPECT_TRUE(removed_setting("track"));
+}
+
 using Notes = std::vector<std::string>;
 
 Notes notes_of(const std::vector<std::pair<std::string, std::string>>& assignments,
@@ -114,15 +125,19 @@ TEST(ModelSettings, NotesTellWhatHasNoEffectInItsCompany) {
             Notes{"setting lambda has no effect with terms = none"});
   EXPECT_EQ(notes_of({{"terms", "linear"}, {"lambda", "0"}}),
             Notes{"setting terms has no effect with lambda = 0"});
-  EXPECT_EQ(notes_of({{"track", "3"}}, true),
-            Notes{"setting track has no effect with a given scale"});
+  EXPECT_EQ(notes_of({{"learner", "svr"}, {"warmup", "60"}}, true),
+            Notes{"setting warmup has no effect with a given scale"});
+  EXPECT_EQ(notes_of({{"warmup", "60"}}),
+            Notes{"setting warmup has no effect with learner = posterior"});
+  EXPECT_EQ(notes_of({{"learner", "svr"}, {"adapt", "follow"}}),
+            Notes{"setting adapt has no effect with learner = svr"});
 }
 
 TEST(ModelSettings, NoNoteOfWhatHasAnEffectIsOffOrWasNotGiven) {
   EXPECT_EQ(notes_of({{"k", "3"}, {"forget", "fifo,age"}}), Notes{}) << "on one axis it has";
   EXPECT_EQ(notes_of({{"lambda", "0"}, {"terms", "none"}}), Notes{}) << "both are off";
   EXPECT_EQ(notes_of({{"adapt", "none"}}), Notes{}) << "nobody asked for a memory";
-  EXPECT_EQ(notes_of({{"track", "3"}, {"warmup", "50"}}), Notes{});
+  EXPECT_EQ(notes_of({{"learner", "svr"}, {"warmup", "50"}}), Notes{});
 }
 
 // A rule with a misspelt name or value would never be true.

@@ -121,7 +121,7 @@ TEST(SharedModel, PublishingAndPredictingAllocateNothing) {
     shared.predict(drive.x[i], std::span<Prediction>(y));
   }
   EXPECT_EQ(testing::allocations, before);
-  EXPECT_EQ(words[3], 445U);  // every row after the first 55 renewed the block
+  EXPECT_EQ(words[3], 491U);  // every row after the first 9 renewed the block
 }
 
 // Readers at full speed. What each of them was told by a picture is what the writer found when it

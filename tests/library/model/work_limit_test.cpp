@@ -56,7 +56,6 @@ TEST(WorkLimit, BoundsTheStepsOfAnUpdateAndCostsNoAccuracy) {
   ModelSettings settings = ModelSettings::from_preset("default", 1);
   for (const auto& [name, value] :
        std::initializer_list<std::pair<const char*, const char*>>{{"learner", "svr"},
-                                                                  {"adapt", "none"},
                                                                   {"terms", "none"},
                                                                   {"fine", "0"},
                                                                   {"gamma", "1"},

@@ -20,16 +20,5 @@ TEST(Budget, SharesWorkAndKeepsSomeForOthers) {
   EXPECT_FALSE(first.within(5).goes_on());
 }
 
-TEST(Budget, LeavesHalfOfWhatThereIs) {
-  Work left = 100;
-  const Budget all = Budget().sharing(left, 20);
-  Budget half = all.split_half();
-  EXPECT_TRUE(half.spend(40));
-  EXPECT_FALSE(half.spend());
-  EXPECT_EQ(left, 60);
-  EXPECT_TRUE(Budget(all).spend());
-  EXPECT_TRUE(Budget().split_half().spend(1'000'000)) << "nothing shared, nothing kept";
-}
-
 }  // namespace
 }  // namespace kelpie::budget_test

@@ -13,6 +13,7 @@
 
 #include "kelpie/core/error.hpp"
 #include "learner/streams.hpp"
+#include "svr/sample_collector.hpp"
 
 namespace kelpie::online_svr_test {
 namespace {
@@ -290,43 +291,6 @@ TEST(OnlineSvr, RefusesSettingsThatMakeNoSense) {
   settings = {};
   settings.gamma = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(OnlineSvr(2, settings), InputError);
-}
-
-// In another scale the learner solves the problem that it would have had there from the start.
-TEST(OnlineSvr, RestatedItIsAtTheOptimumOfTheOtherScale) {
-  for (const SolverKind solver : {SolverKind::path, SolverKind::smo}) {
-    OnlineSvrSettings settings;
-    settings.solver = solver;
-    settings.buffer = 200;
-    settings.gamma = 0.5;
-    OnlineSvr learner(2, settings);
-    const std::vector<Sample> stream = wandering_stream(4, 600);
-    for (const Sample& sample : stream) {
-      learner.update(sample.z, sample.y, sample.t);
-    }
-    learner.rescale([](std::span<double> x, double& y) {
-      x[0] = 0.5 * x[0] + 3.0;
-      x[1] *= 1.5;
-      y = 2.0 * y - 7.0;
-    });
-    EXPECT_LE(kkt_afresh(learner.buffer().problem()).gap(), settings.tolerance);
-    EXPECT_LE(learner.status().kkt_gap, settings.tolerance);
-    std::vector<Sample> judged = wandering_stream(5, 300, 0.0);
-    for (Sample& sample : judged) {
-      sample.z = {0.5 * sample.z[0] + 3.0, 1.5 * sample.z[1]};
-      sample.y = 2.0 * sample.y - 7.0;
-    }
-    EXPECT_GT(r_squared_on(learner, judged), 0.98);
-    for (std::size_t i = 0; i < learner.buffer().size(); ++i) {
-      EXPECT_NEAR(
-          learner.buffer().density().at(i),
-          density_by_definition(learner.buffer().samples(), i, KernelDensity::scott(2, 200)), 1e-9);
-    }
-    for (const Sample& sample : judged) {  // and it learns on
-      learner.update(sample.z, sample.y, stream.back().t + sample.t);
-    }
-    EXPECT_LE(kkt_afresh(learner.buffer().problem()).gap(), settings.tolerance);
-  }
 }
 
 }  // namespace

@@ -29,15 +29,6 @@ TEST(RobustScale, FollowsTheLastErrorsOnly) {
   EXPECT_NEAR(scale.value(), 2.9652, 1e-9);
 }
 
-TEST(RobustScale, WeighsAnErrorByHubersRule) {
-  RobustScale scale(2, 1);
-  scale.add(1.0);
-  EXPECT_EQ(scale.huber_weight(1e9, 3.0), 1.0);
-  scale.add(1.0);
-  EXPECT_EQ(scale.huber_weight(-4.0, 3.0), 1.0);
-  EXPECT_NEAR(scale.huber_weight(-44.478, 3.0), 0.1, 1e-12);
-}
-
 TEST(RobustScale, AClearedOneIsANewOne) {
   RobustScale scale(2, 1);
   scale.add(7.0);

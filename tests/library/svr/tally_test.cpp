@@ -48,10 +48,8 @@ TEST(Tally, EveryThingThatHappensIsCountedOnce) {
   EXPECT_EQ(extra({.rejected_by_tolerance = true}, &Tally::rejected_by_tolerance), 1);
   EXPECT_EQ(extra({.unfinished = true}, &Tally::unfinished), 1);
   EXPECT_EQ(extra({.fallbacks = 2}, &Tally::fallbacks), 2);
-  EXPECT_EQ(extra({.suspected = true}, &Tally::suspicions), 1);
   EXPECT_EQ(extra({.changed = true}, &Tally::changes), 1);
   EXPECT_EQ(extra({.withdrawn = true}, &Tally::withdrawn), 1);
-  EXPECT_EQ(extra({.regained = 5}, &Tally::regained), 5);
   EXPECT_EQ(extra({.recalled = 7}, &Tally::recalls), 1);
 }
 

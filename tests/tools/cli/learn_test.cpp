@@ -182,13 +182,14 @@ TEST_F(Learn, CoefficientsAreShownWithTheUnitsGiven) {
 }
 
 TEST_F(Learn, ScalesCanComeFromAnEarlierModel) {
-  testing::succeeded(run("learn log.csv --out a"));
-  testing::succeeded(run("learn log.csv --scales a/model.json --out b"));
+  testing::succeeded(run("learn log.csv --set learner=svr --out a"));
+  testing::succeeded(run("learn log.csv --set learner=svr --scales a/model.json --out b"));
   const auto scaling = [&](const std::string& name) {
     return nlohmann::json::parse(content_of(folder_ / name / "model.json"))["axes"][0]["scaling"];
   };
   EXPECT_EQ(scaling("a"), scaling("b"));
   expect_refused("log.csv --inputs u --targets udot --scales a/model.json", "is a model of u,n");
+  expect_refused("log.csv --scales a/model.json", "--scales: 'learner = posterior' takes no scale");
 }
 
 // Ctrl-C, and SIGTERM as a service manager sends it.

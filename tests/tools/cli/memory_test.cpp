@@ -25,7 +25,7 @@ class Memory : public testing::CommandTest {
 
   Outcome learn(const std::string& arguments) {
     return run(
-        "learn log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
+        "learn log.csv --set buffer=60 --set anchors=20 "
         "--memory m.json " +
         arguments);
   }
@@ -63,20 +63,19 @@ TEST_F(Memory, IsKeptFromRunToRunListedShownAndForgotten) {
   expect_refused("memory show m.json udot:1", "m.json: udot:1: isn't there");
 }
 
-// Sums in place of samples; a file of the one is none for the other.
-TEST_F(Memory, OfThePosteriorIsKeptAsSums) {
-  testing::succeeded(learn("--set learner=posterior"));
-  const nlohmann::json first = the_only_model();
-  EXPECT_EQ(parsed("m.json")["version"], 2);
-  EXPECT_NE(run("memory list m.json").out.find("udot:1"), std::string::npos);
+TEST_F(Memory, IsOfTheTermsAndOfNoUseToALearnerAlone) {
+  testing::succeeded(learn(""));
   EXPECT_NE(run("memory show m.json udot:1").out.find("root mean square"), std::string::npos);
+  expect_refused("learn log.csv --set terms=linear --memory m.json", "m.json: terms: are '1; ");
+  expect_refused("learn log.csv --set learner=svr --memory m.json", "learner = svr");
+}
+
+// As kelpie 1.x wrote them: samples.
+TEST_F(Memory, OfVersionOneIsRefusedByASentence) {
+  write("m.json", R"({"format": "kelpie-memory", "version": 1, "inputs": ["u", "n"], "units": {},
+                      "axes": []})");
   expect_refused("learn log.csv --memory m.json",
-                 "m.json: models: are sums, as 'learner = posterior' keeps them");
-  testing::succeeded(learn("--set learner=posterior"));
-  EXPECT_EQ(the_only_model()["number"], 1);
-  EXPECT_NEAR(the_only_model()["samples"].get<int>(), 2 * first["samples"].get<int>(), 40);
-  expect_refused("learn log.csv --set learner=posterior --set terms=linear --memory m.json",
-                 "m.json: terms: are '1; ");
+                 "m.json: version: 1 holds the samples of past models, as kelpie 1.x wrote them");
 }
 
 TEST_F(Memory, ADayLearnedFourTimesTakesOnePlace) {
@@ -94,7 +93,7 @@ TEST_F(Memory, TwoRunsAtOnceLoseNothing) {
     std::filesystem::create_directory(folder);
     return std::async(std::launch::async, [folder] {
       return kelpie_process(folder,
-                            "learn ../log.csv --set buffer=60 --set anchors=20 --set warmup=50 "
+                            "learn ../log.csv --set buffer=60 --set anchors=20 "
                             "--memory ../m.json")
           .exit_code;
     });

@@ -17,6 +17,7 @@ namespace {
 
 using testing::message_of;
 
+// Of a constant and a term.
 StoredPastModel past(std::int64_t number) {
   return {.info = {.number = number,
                    .from_s = 0.1,
@@ -24,33 +25,20 @@ StoredPastModel past(std::int64_t number) {
                    .samples = 12'345,
                    .recalls = 2,
                    .usual_error = 0.1 + 0.2},
-          .inputs = {1.0, 2.0, 1.0 / 3.0, -4.0},
-          .targets = {0.5, -0.25},
-          .times_s = {10.0, 10.1}};
+          .rows_per_sample = 2.5,
+          .sums = {0.5, 60.0, 58.0, 7.0, 1.0, 1.0 / 3.0, 58.0, -2.0, 40.0}};
 }
 
 format::PastModelsFile memory() {
   return {.inputs = {"u", "n"},
           .units = {{"u", "m s^-1"}, {"udot", "m s^-2"}},
+          .terms = {"1", "u"},
           .axes = {{"udot", {past(1), past(3)}}, {"rdot", {past(1)}}}};
 }
 
-// Of a constant and a term.
-format::PastModelsFile sums() {
-  StoredPastModel model = past(1);
-  model.inputs = model.targets = model.times_s = {};
-  model.rows_per_sample = 2.5;
-  model.sums = {0.5, 60.0, 58.0, 7.0, 1.0, 1.0 / 3.0, 58.0, -2.0, 40.0};
-  return {.inputs = {"u", "n"},
-          .units = {},
-          .terms = {"1", "u"},
-          .axes = {{"udot", {model}}, {"rdot", {model}}}};
-}
-
-ModelSettings posterior_settings() {
+ModelSettings settings_of(const std::string& terms) {
   ModelSettings settings = ModelSettings::from_preset("default", 2);
-  settings.assign("learner", "posterior");
-  settings.assign("terms", "u");
+  settings.assign("terms", terms);
   return settings;
 }
 
@@ -71,38 +59,17 @@ TEST(MemoryJson, ReadsBackToTheLastBit) {
   EXPECT_EQ(model.info.number, 3);
   EXPECT_EQ(model.info.usual_error, 0.1 + 0.2);
   EXPECT_EQ(model.info.until_s, 1e9 / 3.0);
-  EXPECT_EQ(model.inputs, past(3).inputs);
-  EXPECT_EQ(model.targets, past(3).targets);
-  EXPECT_EQ(model.times_s, past(3).times_s);
-}
-
-TEST(MemoryJson, SumsReadBackToTheLastBit) {
-  const std::string text = format::memory_json(sums());
-  const format::PastModelsFile read = format::parse_memory_json(text, "m.json");
-  EXPECT_EQ(format::memory_json(read), text);
-  EXPECT_EQ(read.terms, sums().terms);
-  EXPECT_EQ(read.axes[0].models[0].sums, sums().axes[0].models[0].sums);
-  EXPECT_EQ(read.axes[0].models[0].rows_per_sample, 2.5);
-  auto bad = nlohmann::json::parse(text);
-  const auto refusal = [&] {
-    return message_of<InputError>([&] { format::parse_memory_json(bad.dump(), "m.json"); });
-  };
-  bad["axes"][0]["models"][0]["sums"][2] = 0;
-  EXPECT_EQ(refusal(), "m.json: axes[0].models[0].sums: are of no samples");
-  bad["terms"].push_back("n");
-  EXPECT_EQ(refusal(), "m.json: axes[0].models[0].sums: holds 9 numbers; 13 are needed");
-  const std::string table = report::past_model_table(read, "udot:1", read.axes[0].models[0]);
-  for (const char* const part : {"60 samples", "root mean square", "-0.03448", "0.8305"}) {
-    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
-  }
+  EXPECT_EQ(read.terms, memory().terms);
+  EXPECT_EQ(model.sums, past(3).sums);
+  EXPECT_EQ(model.rows_per_sample, 2.5);
 }
 
 TEST(MemoryJson, RefusesNumbersThatNobodyCanCalculateWith) {
   auto json = nlohmann::json::parse(format::memory_json(memory()));
-  json["axes"][0]["models"][1]["rows"][1][2] = -1.7e308;
+  json["axes"][0]["models"][1]["sums"][2] = -1.7e308;
   EXPECT_EQ(
       message_of<InputError>([&] { format::parse_memory_json(json.dump(), "m.json"); }),
-      "m.json: axes[0].models[1].rows[1][2]: is out of range; kelpie writes numbers within ±1e100");
+      "m.json: axes[0].models[1].sums[2]: is out of range; kelpie writes numbers within ±1e100");
 }
 
 TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {
@@ -112,16 +79,18 @@ TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {
   };
   EXPECT_EQ(refusal(good), "");
   auto bad = good;
-  bad["version"] = 2;
-  EXPECT_EQ(refusal(bad), "m.json: file: has no 'terms'");
+  bad["version"] = 1;
+  EXPECT_EQ(refusal(bad),
+            "m.json: version: 1 holds the samples of past models, as kelpie 1.x wrote them; kelpie "
+            "2.0.0 keeps sums (CHANGELOG.md): give the name of a new file");
   bad["version"] = 3;
-  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 1");
+  EXPECT_EQ(refusal(bad), "m.json: version: this kelpie reads version 2");
   bad = good;
-  bad["axes"][0]["models"][1]["rows"][0].push_back(1);
-  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[1].rows[0]: holds 5 numbers; 4 are needed");
+  bad["axes"][0]["models"][0]["sums"][2] = 0;
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[0].sums: are of no samples");
   bad = good;
-  bad["axes"][0]["models"][1]["rows"] = nlohmann::json::array();
-  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[1].rows: needs a row at least");
+  bad["terms"].push_back("n");
+  EXPECT_EQ(refusal(bad), "m.json: axes[0].models[0].sums: holds 9 numbers; 13 are needed");
   bad = good;
   bad["axes"][0]["models"][1]["number"] = 1;
   EXPECT_EQ(refusal(bad), "m.json: axes[0].models[1].number: is that of two models");
@@ -143,7 +112,7 @@ TEST(MemoryJson, RefusesWhatDoesNotFitWithItsPlace) {
 }
 
 TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
-  const ModelSettings settings = ModelSettings::from_preset("default", 2);
+  const ModelSettings settings = settings_of("u");
   const auto refusal = [&](const format::PastModelsFile& known, const log::Dataset& data,
                            const ModelSettings& used) {
     DynamicsModel model(data.input_names, data.target_names, used);
@@ -154,16 +123,7 @@ TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
     return message;
   };
   EXPECT_EQ(refusal(memory(), log(), settings), "");
-  EXPECT_EQ(refusal(sums(), log(), posterior_settings()), "");
-  EXPECT_EQ(refusal(memory(), log(), posterior_settings()),
-            "m.json: models: are samples, as 'learner = committee' keeps them, and the run needs "
-            "sums, as 'learner = posterior' keeps them: give another file, or --set "
-            "learner=committee");
-  EXPECT_NE(refusal(sums(), log(), settings).find("give another file, or --set learner=posterior"),
-            std::string::npos);
-  ModelSettings others = posterior_settings();
-  others.assign("terms", "n");
-  EXPECT_EQ(refusal(sums(), log(), others),
+  EXPECT_EQ(refusal(memory(), log(), settings_of("n")),
             "m.json: terms: are '1; u' there, '1; n' in the run: give the same terms");
   log::Dataset other = log();
   other.input_names = {"n", "u"};
@@ -186,7 +146,7 @@ TEST(MemoryJson, IsGivenToItsOwnVehicleOnly) {
 
 // What a run has learned, whatever others have written since it began.
 TEST(MemoryJson, NothingThatTwoRunsHaveLearnedIsLost) {
-  const ModelSettings settings = ModelSettings::from_preset("default", 2);
+  const ModelSettings settings = settings_of("u");
   const auto begin = [] {
     return format::parse_memory_json(format::memory_json(memory()), "m.json");
   };
@@ -199,15 +159,15 @@ TEST(MemoryJson, NothingThatTwoRunsHaveLearnedIsLost) {
   format::PastModelsFile b = begin();
   learn(b, 1, 50);
   b.axes[0].models.push_back(past(4));
-  b.axes[0].models.back().targets[0] = 7.0;
+  b.axes[0].models.back().sums[0] = 7.0;
 
   format::PastModelsFile file = begin();
   file.add(a, settings, "m.json");
   file.add(b, settings, "m.json");
   EXPECT_EQ(file.find("udot:1", "m").info.samples, 12'345 + 100);
   EXPECT_EQ(file.find("udot:3", "m").info.samples, 12'345 + 50);
-  EXPECT_EQ(file.find("udot:4", "m").targets[0], 0.5);
-  EXPECT_EQ(file.find("udot:5", "m").targets[0], 7.0);
+  EXPECT_EQ(file.find("udot:4", "m").sums[0], 0.5);
+  EXPECT_EQ(file.find("udot:5", "m").sums[0], 7.0);
   EXPECT_EQ(file.axes[1].models.size(), 1U);
 
   format::PastModelsFile forgotten = begin();
@@ -266,7 +226,8 @@ TEST(MemoryJson, TablesTellWithUnits) {
     EXPECT_NE(list.find(part), std::string::npos) << part << "\n" << list;
   }
   const std::string one = report::past_model_table(known, "udot:3", known.find("udot:3", "m"));
-  for (const char* const part : {"u", "m s^-1", "0.3333", "0.6667", "-4", "Recalls: 2"}) {
+  for (const char* const part :
+       {"60 samples", "root mean square", "-0.03448", "0.8305", "Recalls: 2"}) {
     EXPECT_NE(one.find(part), std::string::npos) << part << "\n" << one;
   }
 }

@@ -164,18 +164,16 @@ TEST(ResultJson, EveryTotalIsThere) {
            .crowded_out = 9,
            .unfinished = 10,
            .fallbacks = 11,
-           .suspicions = 12,
            .changes = 13,
            .recalls = 14,
            .withdrawn = 16};
-  tally.regained = 15;
   // The names are what others' programs read.
   EXPECT_EQ(parsed(result)["axes"][0]["decisions"],
             Json::parse(R"({"accepted": 1, "gate_explained": 2, "gate_duplicate": 3, "invalid": 4,
                             "outliers": 5, "forgotten": 6, "released": 7, "unserved": 8,
                             "crowded_out": 9, "unfinished": 10, "fallbacks": 11,
-                            "suspicions": 12, "changes": 13, "recalls": 14,
-                            "withdrawn": 16, "regained": 15, "implausible": 17})"));
+                            "changes": 13, "recalls": 14, "withdrawn": 16,
+                            "implausible": 17})"));
 }
 
 TEST(ResultJson, TheDisturbanceHasScoreAndIntervalsOfItsOwn) {

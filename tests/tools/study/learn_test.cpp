@@ -34,7 +34,7 @@ TEST(LearnPlan, FillsInEveryFieldOfTheResult) {
   EXPECT_EQ(result.training_rows, all.split.training.size());
   EXPECT_EQ(result.samples_shown, result.training_rows);
   EXPECT_EQ(result.seed, 7U);
-  EXPECT_EQ(result.scales, "first 60 training samples");
+  EXPECT_EQ(result.scales, "of the samples so far");
   EXPECT_EQ(result.alignment.why, "as given by --align");
   EXPECT_EQ(result.settings, all.settings.values());
   EXPECT_EQ(result.memory_bytes, DynamicsModel::bytes(all.data.input_names, all.settings));
@@ -105,6 +105,8 @@ TEST(LearnPlan, AStoppedRunHasItsBaselinesOnTheShownSamples) {
 
 TEST(LearnPlan, TheScaleComesFromWhereThePlanSays) {
   study::LearnPlan all = plan();
+  all.settings.assign("learner", "svr");
+  EXPECT_EQ(all.scales_text(), "first 60 training samples");
   const std::vector<AxisScaling> training =
       study::training_scales(all.data, all.split.training, all.settings.shared);
   const auto saved = [&] { return study::make_model(all).save(); };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The simulated vehicle that changes and returns (scenarios/returns.toml, A→B→A→C→B): how good the
 // model is some samples after a hidden switch. MeasuredReturns prints the table of
-// docs/method/learner.md.
+// docs/method/posterior.md.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -28,12 +28,9 @@ namespace {
 
 constexpr std::array<std::size_t, 4> kAfter{0, 25, 50, 200};  // samples after a switch
 
-// The memory of past models is the learner's: it is measured alone.
-ModelSettings learner_alone(std::size_t axes) {
+ModelSettings settings_of(std::size_t axes) {
   ModelSettings settings = ModelSettings::from_preset("default", axes);
-  settings.assign("learner", "svr");
   settings.assign("terms", "fossen");
-  settings.assign("warmup", "200");
   return settings;
 }
 
@@ -51,7 +48,7 @@ class Journey {
   explicit Journey(const log::Dataset& data)
       : data_(data),
         split_(study::make_split(data, {.kind = study::SplitKind::random})),
-        model_(data.input_names, data.target_names, learner_alone(3)),
+        model_(data.input_names, data.target_names, settings_of(3)),
         arrivals_(model_.axes()) {}
 
   // Arrivals of every axis.
@@ -158,7 +155,7 @@ TEST(MeasuredReturns, GradualDriftRecallsNothing) {
   simulator::Scenario scenario = simulator::read_scenario(scenario_file("biofouling.toml"));
   scenario.phases.back().duration_s = scenario.phases.back().ramp_s;
   const log::Dataset data = simulated(scenario);
-  DynamicsModel model(data.input_names, data.target_names, learner_alone(3));
+  DynamicsModel model(data.input_names, data.target_names, settings_of(3));
   for (std::size_t row = 0; row < data.rows(); ++row) {
     model.update(data.input(row), data.target(row), data.times_s[row]);
   }

@@ -40,7 +40,6 @@ study::StreamResult learned(const log::Dataset& data, const std::string& terms,
   settings.assign("lambda", "10");
   settings.assign("fine", "0");
   settings.assign("c", "0.1");
-  settings.assign("warmup", "200");
   settings.assign("buffer", buffer);
   DynamicsModel model(data.input_names, data.target_names, settings);
   return study::run_stream(data, study::make_split(data, {.kind = study::SplitKind::blocks}), model,
@@ -102,7 +101,7 @@ TEST_F(Coefficients, AreThereFromTheFirstModelInServiceOn) {
     for (const study::ValidationPoint& point : axis.validation) {
       EXPECT_EQ(point.coefficients.size(), point.status.ready ? 16U : 0U) << point.samples;
     }
-    EXPECT_EQ(axis.validation.front().samples, 100U);  // an early model's: the scaling needs 200
+    EXPECT_EQ(axis.validation.front().samples, 100U);
     EXPECT_TRUE(axis.validation.front().status.ready);
   }
 }

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The disturbance at the model's door.
-#include "model/dynamics_axis.hpp"
-#include "model/model_axis.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
 #include "kelpie/model/dynamics_model.hpp"
+#include "model/model_axis.hpp"
+#include "model/snapshot.hpp"
 #include "vehicle_stream.hpp"
 
-namespace kelpie::dynamics_axis_test {
+namespace kelpie::disturbance_door_test {
 namespace {
 
 constexpr double kStepS = 0.1;
@@ -35,7 +34,7 @@ DynamicsModel make(const testing::Drive& samples) {
   return {samples.inputs, samples.targets, settings};
 }
 
-TEST(DynamicsAxis, WhatTheModelMissesIsOfferedBesideIt) {
+TEST(DisturbanceAtTheDoor, WhatTheModelMissesIsOfferedBesideIt) {
   const testing::Drive samples = drive_in_a_current();
   DynamicsModel model = make(samples);
   std::array<Prediction, 2> said{};
@@ -72,13 +71,13 @@ TEST(DynamicsAxis, WhatTheModelMissesIsOfferedBesideIt) {
   EXPECT_NEAR(held / 1000.0, 0.9, 0.03);  // three standard errors of fair tosses
 }
 
-TEST(DynamicsAxis, TheDisturbanceFadesWithTime) {
+TEST(DisturbanceAtTheDoor, TheDisturbanceFadesWithTime) {
   const testing::Drive samples = drive_in_a_current();
   DynamicsModel model = make(samples);
   for (std::size_t i = 0; i < samples.x.size(); ++i) {
     model.update(samples.x[i], samples.y[i], kStepS * static_cast<double>(i));
   }
-  const Disturbance& disturbance = model.mechanisms(0).dynamics_axis().disturbance();
+  const Disturbance disturbance = model.mechanisms(0).snapshot().disturbance.value();
   const double soon = disturbance.ahead(0.0, 2.0 * kStepS);
   EXPECT_GT(disturbance.autocorrelation(), 0.5);
   EXPECT_NEAR(disturbance.ahead(0.0, 4.0 * kStepS) / soon,
@@ -86,7 +85,7 @@ TEST(DynamicsAxis, TheDisturbanceFadesWithTime) {
   EXPECT_NEAR(disturbance.ahead(0.0, 1e4), 0.0, 1e-12);
 }
 
-TEST(DynamicsAxis, WithoutAModelThereIsNoDisturbance) {
+TEST(DisturbanceAtTheDoor, WithoutAModelThereIsNoDisturbance) {
   const testing::Drive samples = drive_in_a_current();
   DynamicsModel model = make(samples);
   std::array<Prediction, 2> said{};
@@ -100,4 +99,4 @@ TEST(DynamicsAxis, WithoutAModelThereIsNoDisturbance) {
 }
 
 }  // namespace
-}  // namespace kelpie::dynamics_axis_test
+}  // namespace kelpie::disturbance_door_test
