@@ -33,15 +33,20 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      {},
      kScale,
      {.with = "learner", .values = "posterior"}},
+    {"warmup",
+     "how many first samples the scale of learner = svr is taken from, Σ and the target's",
+     &SharedSettings::warmup,
+     {.low = 2.0, .high = 1e6},
+     kScale,
+     kWithGivenScale},
     {"terms",
-     "φ of the kernel κ_SE + fine κ_SE^32 + λ φᵀφ': a set by name, or formulas over the columns "
-     "(docs/method/physics.md)",
+     "φ of the posterior and of the kernel κ_SE + fine κ_SE^32 + λ φᵀφ': a set by name, or "
+     "formulas over the columns (docs/method/physics.md)",
      Setting<SharedSettings>::Text{&SharedSettings::terms,
                                    "auto, auto:degrees, none, linear, quadratic, fossen, "
                                    "manoeuvring, 6dof, or formulas separated by ;"},
      {},
-     kEssential,
-     {.with = "lambda", .values = "0"}},
+     kEssential},
     {"states",
      "which inputs are the velocities that the targets accelerate, in their order: for rollouts",
      Setting<SharedSettings>::Text{
@@ -54,12 +59,6 @@ constexpr std::array kSharedFields = std::to_array<Setting<SharedSettings>>({
      &SharedSettings::coverage,
      {.low = 0.5, .high = 0.99},
      kEssential},
-    {"warmup",
-     "how many first samples the scale of learner = svr is taken from, Σ and the target's",
-     &SharedSettings::warmup,
-     {.low = 2.0, .high = 1e6},
-     kEssential,
-     kWithGivenScale},
 });
 
 // Settings of older files, and what to write instead.

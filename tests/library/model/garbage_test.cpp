@@ -229,7 +229,7 @@ TEST_P(RandomGarbage, InTargetsIsHarmlessAMinuteAfter) {
   }
 }
 
-// Garbage in inputs, or at the start, may cost an axis more (docs/method/committee.md).
+// Garbage in inputs, or at the start, may cost an axis more (docs/measured/accuracy.md).
 TEST_P(RandomGarbage, AnywhereSaysNothingBeyondWhatWasSeen) {
   const Burst burst = random_burst(GetParam() + 100, GetParam() % 3 == 0);
   SCOPED_TRACE(burst);

@@ -123,8 +123,6 @@ TEST(ModelSettings, NotesTellWhatHasNoEffectInItsCompany) {
             Notes{"setting outlier_factor has no effect with outlier = iqr,none"});
   EXPECT_EQ(notes_of({{"lambda", "1"}, {"terms", "none"}}),
             Notes{"setting lambda has no effect with terms = none"});
-  EXPECT_EQ(notes_of({{"terms", "linear"}, {"lambda", "0"}}),
-            Notes{"setting terms has no effect with lambda = 0"});
   EXPECT_EQ(notes_of({{"learner", "svr"}, {"warmup", "60"}}, true),
             Notes{"setting warmup has no effect with a given scale"});
   EXPECT_EQ(notes_of({{"warmup", "60"}}),

@@ -121,7 +121,7 @@ TEST_F(Checkpoint, AnotherRunIsRefusedByName) {
   expect_refused("--out out --resume --set gamma=0.3", file + "gamma: is '0.1' there, '0.3'");
   expect_refused("--out out --resume --split tail", file + "split: is 'blocks of 400 rows");
   expect_refused("--out out --resume --scales train",
-                 file + "scales: is 'of the samples so far' there");
+                 "--scales: 'learner = posterior' takes no scale");
   expect_refused("--out out --resume --validate-every 9", file + "validate_every: is '0' there");
   expect_refused("--out out --resume --inputs u", file + "inputs: is 'u, n' there, 'u'");
   write("log.csv", little_log(2500));

@@ -123,22 +123,21 @@ TEST_F(DraftCommand, WrongChecksumsAreToldInOneLineAndRefusedByStrict) {
 TEST_F(DraftCommand, RealLogsAreLearnedInOneCommand) {
   struct Case {
     std::string name, said;
-    int exit_code;
   };
-  for (const auto& [name, said, exit_code] :
-       {Case{"ros1_usv_sim.bag", "u = y_speed:data", 0},
-        Case{"ardusub_small.tlog", "commands come at 2 Hz", 2}}) {  // armed for 16 s: too short
+  for (const auto& [name, said] :
+       {Case{"ros1_usv_sim.bag", "u = y_speed:data"},
+        Case{"ardusub_small.tlog", "commands come at 2 Hz"}}) {  // armed for 16 s
     const std::filesystem::path log = testing::data_file("logs/" + name);
     if (log.empty()) {
       GTEST_SKIP() << name << " is in neither $KELPIE_DATA_DIR nor ../shared/data";
     }
     const Outcome outcome = run("learn " + log.string() + " --out out_" + name);
-    ASSERT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find(said), std::string::npos) << outcome.out;
   }
 }
 
-// 20 s at 50 Hz: the kernel grows where a challenger has just been, while least squares go on.
+// 20 s at 50 Hz.
 TEST_F(DraftCommand, NoChangeIsBelievedWhereAllTogetherForetellTheVehicle) {
   const std::filesystem::path log = testing::data_file("logs/ros1_usv_sim.bag");
   if (log.empty()) {

@@ -113,10 +113,10 @@ TEST_F(FirstHour, TheOrderOfColumnsAndColumnsBesideChangeNothing) {
 
 // D5: no model is no success, and one sentence says so.
 TEST_F(FirstHour, ALogTooShortForAModelEndsWithCodeTwo) {
-  write("short.csv", testing::little_log(45));
+  write("short.csv", testing::little_log(9));
   const Outcome outcome = run("learn short.csv --out out");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("nothing was learned: 40 training rows are too few for a scale"),
+  EXPECT_NE(outcome.err.find("nothing was learned: 8 training rows are too few for a model"),
             std::string::npos)
       << outcome.err;
   EXPECT_EQ(outcome.out, "");

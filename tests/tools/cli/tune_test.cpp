@@ -34,9 +34,7 @@ class TuneCommand : public testing::CommandTest {
   }
 
   int tune(const std::string& more) {
-    return ran(
-        "tune log.csv --out out --split tail --set warmup=30 --set buffer=60 --candidates 4 " +
-        more);
+    return ran("tune log.csv --out out --split tail --set buffer=60 --candidates 4 " + more);
   }
 
   const std::string& said() const { return said_; }

@@ -23,10 +23,10 @@ TEST(TuneReport, TableHasTableOneBesideOursWithinAHundredColumns) {
   for (const char* const words :
        {"epsilon", "buffer", "xi", "0.912", "0.881", "least squares  0.701", "paper (Table I)",
         "1 evaluations; given up, since the solver needed too many iterations: 1",
-        "tuned       tuned       tuned   paper   paper   paper",
-        "udot        vdot        rdot    udot    vdot    rdot",
-        "0.1       0.777         0.1    0.01   0.025    0.05",
-        "diagonal    diagonal    diagonal    full    full    full"}) {
+        "tuned      tuned      tuned   paper   paper   paper",
+        "udot       vdot       rdot    udot    vdot    rdot",
+        "0.1      0.777        0.1    0.01   0.025    0.05",
+        "diagonal   diagonal   diagonal    full    full    full"}) {
     EXPECT_NE(table.find(words), std::string::npos) << words << "\n" << table;
   }
   for (const std::string& line : split_text(table, '\n')) {
