@@ -9,6 +9,7 @@
 #include "kelpie/model/open_loop.hpp"
 #include "kelpie/model/trained_model.hpp"
 #include "kelpie/navigation/dead_reckoning.hpp"
+#include "model/snapshot.hpp"
 
 namespace kelpie::lab {
 namespace {
@@ -67,7 +68,11 @@ class LearnedReckoner final : public Reckoner {
       return;
     }
     next_s_ = sensed.time_s + kRenewS;
-    const OpenLoop loop = open_loop(model_.trained(), OpenLoopPart::steady);
+    const TrainedModel trained = model_.trained();
+    if (!trained.axes.front().steady.ready()) {  // too few samples for the equations
+      return;
+    }
+    const OpenLoop loop = open_loop(trained, OpenLoopPart::steady);
     if (reckoning_) {
       reckoning_->use(loop);
     } else {

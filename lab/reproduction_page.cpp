@@ -476,7 +476,7 @@ std::vector<Part> parts_of(const Json& document, bool drawn) {
         "reciprocal "
         "and as printed. Additions: the searched settings of the paper's learner with one addition "
         "of "
-        "kelpie's, then all four, then kelpie's learner of one axis with kelpie's own values "
+        "kelpie's, then all additions, then kelpie's learner of one axis with kelpie's own values "
         "(learner = svr; chosen earlier, also on training rows of this log). kelpie's default: "
         "what "
         "kelpie learn runs. Between them the baselines, with the paper's buffer and kernel. In "

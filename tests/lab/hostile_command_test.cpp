@@ -27,8 +27,7 @@ std::vector<std::string> cells_of(const std::string& table, const std::string& k
 
 TEST_F(HostileCommand, TableAndNumbersAgreeWithAnyNumberOfThreads) {
   const std::string command =
-      "hostile --kinds clean,one_burst --seeds 1 --set learner=svr --set buffer=100 "
-      "--set adapt=none ";
+      "hostile --kinds clean,one_burst --seeds 1 --set buffer=100 --set adapt=none ";
   const Outcome outcome = testing::succeeded(run(command + "--threads 2 --json two.json"));
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(testing::succeeded(run(command + "--threads 1 --json one.json")).out, outcome.out);
