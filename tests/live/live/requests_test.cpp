@@ -382,6 +382,7 @@ TEST_F(LiveRequests, WhileItIsResetPredictionsAreThoseOfTheModelBeforeOrNone) {
 
 // The first samples wait for the scale, and are learned a few with each that follows.
 TEST_F(LiveRequests, ARecordingThatEndsSoonIsLearnedWhole) {
+  configuration_.settings.assign("learner", "svr");  // which holds samples back for a scale
   int held_back = 0;
   for (int k = 0; k < 8; ++k) {
     testing::write_text(folder_ / "x.mcap",

@@ -29,7 +29,8 @@ class Compare : public testing::CommandTest {
 };
 
 TEST_F(Compare, HasTheFiguresOfLearnWithAnyNumberOfThreads) {
-  const std::string rows = " log.csv --split pieces --set buffer=100 --set learner=svr";
+  const std::string rows =
+      " log.csv --split pieces --set buffer=100 --set learner=svr --set warmup=200";
   const Outcome outcome = testing::succeeded(run("compare" + rows + " --threads 2 --out two"));
   EXPECT_EQ(outcome.err, "");  // no progress bar without a terminal
   testing::succeeded(run("compare" + rows + " --threads 1 --out one"));
