@@ -63,7 +63,7 @@ TEST(GoOnWith, ALearnerAloneSaysTheSameToTheSolversTolerance) {
 }
 
 TEST(GoOnWith, TheFirstSamplesOfAnotherLogDoNoHarm) {
-  const TrainedModel before = learned(testing::drive(1, 900), settings_of("posterior")).trained();
+  const TrainedModel before = learned(testing::drive(1, 900), settings_of("svr")).trained();
   const Drive next = testing::drive(2, 200);
   DynamicsModel after = DynamicsModel::resume_from(before, 1000.0);
   std::array<double, 2> error{};

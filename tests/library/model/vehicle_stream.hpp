@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "kelpie/core/random.hpp"
+#include "kelpie/model/dynamics_model.hpp"
+#include "model/model_axis.hpp"
 
 namespace kelpie::testing {
 
@@ -33,6 +35,18 @@ inline Drive drive(std::uint64_t seed, std::size_t samples) {
                        50.0 + 5.0 * std::sin(4.0 * speed)});
   }
   return drive;
+}
+
+/// A number that changes with the units of an axis.
+inline double units_of(const DynamicsModel& model) {
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < model.axes(); ++axis) {
+    const AxisScaling* const scaling = model.mechanisms(axis).scaling();
+    sum += scaling != nullptr ? scaling->input.whitening(0, 0) + scaling->input.whitening(1, 1) +
+                                    scaling->target.scale
+                              : 0.0;
+  }
+  return sum;
 }
 
 }  // namespace kelpie::testing
