@@ -83,13 +83,13 @@ class Parameters(ParameterAccess, RegressorMixin, BaseEstimator):
         states: Word = None,
         velocities: Word = None,
         coverage: Optional[float] = None,
-        warmup: Optional[int] = None,
         outlier: Word = None,
         buffer: Number = None,
         adapt: Word = None,
         memory: Optional[int] = None,
         # Scale
         scaling: Optional[str] = None,
+        warmup: Optional[int] = None,
         # Kernel
         gamma: Number = None,
         fine: Number = None,

@@ -38,8 +38,7 @@ def drive(rows: int, seed: int = 1) -> Drive:
 
 INPUTS = ["u", "v", "n1", "n2"]
 TARGETS = ["udot", "vdot"]
-SMALL = {"inputs": INPUTS, "targets": TARGETS, "rate": 10.0, "buffer": 120, "anchors": 30,
-         "warmup": 50}
+SMALL = {"inputs": INPUTS, "targets": TARGETS, "rate": 10.0, "buffer": 120, "anchors": 30}
 
 
 @pytest.fixture(scope="session")

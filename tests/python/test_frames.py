@@ -151,7 +151,7 @@ STAMPS = {
 def test_times_may_be_stamps(log, kind):
     t = np.round(log.t, 6)
     stamps = STAMPS[kind](t)
-    seconds = kelpie.DynamicsModel(**SMALL).fit(log.X, log.y, t)
+    seconds = kelpie.DynamicsModel(**SMALL).partial_fit(log.X, log.y, t)
     model = kelpie.DynamicsModel(**SMALL)
     model.partial_fit(log.X[:300], log.y[:300], stamps[:300])
     model = pickle.loads(pickle.dumps(model))

@@ -57,7 +57,7 @@ def test_a_data_frame_is_learned_as_the_command_learns(build_dir, tmp_path):
     assert list(frame) == ["t", "v", "u", "r", "th2", "th1", "vdot", "udot", "rdot"]
     assert frame.attrs["inputs"] == ["v", "u", "r", "th2", "th1"]
     assert frame.attrs["units"] == {"u": "m/s"}
-    model = kelpie.DynamicsModel(inputs=frame.attrs["inputs"], buffer=60).partial_fit(frame)
+    model = kelpie.DynamicsModel(inputs=frame.attrs["inputs"], buffer=60).fit(frame)
     theirs = kelpie.DynamicsModel.load(tmp_path / "model.json")
     assert np.array_equal(model.predict(frame.dropna()), theirs.predict(frame.dropna()))
 

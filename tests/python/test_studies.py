@@ -13,7 +13,7 @@ from conftest import INPUTS, SMALL, SOURCE_DIR, TARGETS, drive
 import kelpie
 
 pandas = pytest.importorskip("pandas")
-QUICK = {"buffer": 60, "anchors": 15, "warmup": 50}
+QUICK = {"buffer": 60, "anchors": 15}
 
 
 @pytest.fixture(scope="module")
