@@ -10,8 +10,8 @@
 
 namespace kelpie {
 
-/// The last `most` samples of one axis in order: samples before the scale is known, and samples
-/// that an axis has still to learn (GuardedAxis). Allocates in the constructor only.
+/// The last `most` samples of one axis in order, before the scale is known. Allocates in the
+/// constructor only.
 class WarmUp {
  public:
   /// A sample.

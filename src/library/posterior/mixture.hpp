@@ -25,7 +25,7 @@ namespace kelpie {
 ///     svr        the paper's learner
 ///     mean       the mean of the targets, for axes without predictable structure
 ///
-/// Limits as of a Committee: terms stay within twice their ranges, disagreement of the members
+/// Limits: terms stay within twice their ranges, disagreement of the members
 /// shrinks the value towards the mean, and each member stays within the targets seen (SeenRange).
 /// The targets' range is widened to what the terms are certain of, so that effects may meet which
 /// never met before. Beside a vehicle known beforehand, the members say what that vehicle leaves.

@@ -46,7 +46,7 @@ inline constexpr struct PosteriorTuning {
   double most_unknown = 20.0;  ///< s² of a row that waits, in variances of the target; by hand
   double set_off = 1e3;        ///< s² at which a vehicle at rest sets off, likewise; by hand
   double far = 10.0;           ///< deviations of a velocity beyond which a row counts less; by hand
-  double garbage_s = 36.0;     ///< longest garbage of a sensor [s], as for the committee's guard
+  double garbage_s = 36.0;     ///< longest garbage of a sensor [s]; by hand
   double longest_step_s = 2.0;  ///< of two rows without a gap [s]; by hand
   double surprise = 16.0;       ///< e²/(σ² + s²) beyond which a row waits; by hand
   double patience = 4.0;    ///< times the longest garbage, of rows that no terms explain; by hand

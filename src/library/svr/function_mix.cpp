@@ -13,22 +13,7 @@ namespace {
 
 constexpr double kLeastShares = 1e-300;  // of a sum that is divided by
 
-// Calls `add(share, function)` for every member, whoever owns it.
-template <typename Add>
-void for_each(std::span<const WeightedFunction> functions, Add add) {
-  for (const WeightedFunction& weighted : functions) {
-    add(weighted.share, *weighted.function);
-  }
-}
-
-template <typename Add>
-void for_each(const std::vector<FunctionMix::Member>& members, Add add) {
-  for (const FunctionMix::Member& member : members) {
-    add(member.share, member.function);
-  }
-}
-
-/// Sums over functions, as mixed_value() has them; of all but the last from the first one's value.
+/// Sums over the functions of a mix; of all but the last from the first one's value.
 struct MixSums {
   double mean = 0.0;     ///< Σ s_k f_k of all functions
   double first = 0.0;    ///< f_0
@@ -84,23 +69,21 @@ void flatten_beyond(std::span<const ValueRange> ranges, std::span<const double> 
   }
 }
 
-template <typename WeightedFunctions>
-double value_of(const WeightedFunctions& functions, const Limits& limits,
-                std::span<const ValueRange> ranges, std::span<const double> x) {
-  const ScaledSample moved = within_ranges(ranges, x);
+double value_of(const FunctionMix& mix, std::span<const double> x) {
+  const auto [low, high, caution] = mix.limits;
+  const ScaledSample moved = within_ranges(mix.term_ranges, x);
   MixSums sums;
-  std::size_t left = functions.size();
-  for_each(functions, [&](double share, const SvrFunction& function) {
-    sums.add(share, std::clamp(function(as_span(moved)), limits.low, limits.high), --left == 0);
-  });
-  return sums.mean - shrinkage_of(sums, limits.caution).by;
+  std::size_t left = mix.members.size();
+  for (const auto& [name, share, function] : mix.members) {
+    sums.add(share, std::clamp(function(as_span(moved)), low, high), --left == 0);
+  }
+  return sums.mean - shrinkage_of(sums, caution).by;
 }
 
-template <typename WeightedFunctions>
-double value_and_gradient(const WeightedFunctions& functions, const Limits& limits,
-                          std::span<const ValueRange> ranges, std::span<const double> x,
+double value_and_gradient(const FunctionMix& mix, std::span<const double> x,
                           std::span<double> gradient) {
-  const ScaledSample moved = within_ranges(ranges, x);
+  const auto [low, high, caution] = mix.limits;
+  const ScaledSample moved = within_ranges(mix.term_ranges, x);
   using Slopes = std::array<double, kMostInputs + kMostTerms>;
   Slopes slopes{};
   Slopes spread_slopes{};  // Σ s_k (f_k − f_0) ∇f_k of all functions but the last
@@ -110,15 +93,15 @@ double value_and_gradient(const WeightedFunctions& functions, const Limits& limi
   const std::span<double> by_last = std::span(last_slopes).first(x.size());
   std::ranges::fill(gradient, 0.0);
   MixSums sums;
-  std::size_t left = functions.size();
+  std::size_t left = mix.members.size();
   double last_share = 0.0;
-  for_each(functions, [&](double share, const SvrFunction& function) {
+  for (const auto& [name, share, function] : mix.members) {
     const bool is_last = --left == 0;
     const double free = function.with_gradient(as_span(moved), own);
-    const double value = std::clamp(free, limits.low, limits.high);
+    const double value = std::clamp(free, low, high);
     sums.add(share, value, is_last);
-    if (free <= limits.low || free >= limits.high) {
-      return;
+    if (free <= low || free >= high) {
+      continue;
     }
     if (is_last) {
       last_share = share;
@@ -127,16 +110,16 @@ double value_and_gradient(const WeightedFunctions& functions, const Limits& limi
       add_scaled(share, std::span<const double>(own), gradient);
       add_scaled(share * (value - sums.first), std::span<const double>(own), by_spread);
     }
-  });
+  }
   // g = Σ s_k f_k − shares f_last and D² = squares / shares − centre², both of all but the last
-  const Shrinkage shrinkage = shrinkage_of(sums, limits.caution);
+  const Shrinkage shrinkage = shrinkage_of(sums, caution);
   const double d2 = shrinkage.slope_of_d2 * 2.0 / std::max(sums.shares, kLeastShares);
   const double of_gradient = 1.0 - shrinkage.slope + d2 * shrinkage.centre;
   const double of_last = last_share + shrinkage.slope * sums.shares;
   for (std::size_t k = 0; k < x.size(); ++k) {
     gradient[k] = of_gradient * gradient[k] - d2 * by_spread[k] + of_last * by_last[k];
   }
-  flatten_beyond(ranges, x, gradient);
+  flatten_beyond(mix.term_ranges, x, gradient);
   return sums.mean - shrinkage.by;
 }
 
@@ -152,24 +135,12 @@ ScaledSample within_ranges(std::span<const ValueRange> ranges, std::span<const d
   return moved;
 }
 
-double mixed_value(std::span<const WeightedFunction> functions, const Limits& limits,
-                   std::span<const ValueRange> ranges, std::span<const double> x) {
-  return value_of(functions, limits, ranges, x);
-}
-
-double mixed_value_with_gradient(std::span<const WeightedFunction> functions, const Limits& limits,
-                                 std::span<const ValueRange> ranges, std::span<const double> x,
-                                 std::span<double> gradient) {
-  return value_and_gradient(functions, limits, ranges, x, gradient);
-}
-
 double FunctionMix::operator()(std::span<const double> x) const {
-  return value_of(members, limits, term_ranges, x) +
-         dot(std::span<const double>(nominal), x.last(nominal.size()));
+  return value_of(*this, x) + dot(std::span<const double>(nominal), x.last(nominal.size()));
 }
 
 double FunctionMix::with_gradient(std::span<const double> x, std::span<double> gradient) const {
-  const double value = value_and_gradient(members, limits, term_ranges, x, gradient);
+  const double value = value_and_gradient(*this, x, gradient);
   add_scaled(1.0, std::span<const double>(nominal), gradient.last(nominal.size()));
   return value + dot(std::span<const double>(nominal), x.last(nominal.size()));
 }

@@ -29,14 +29,9 @@ struct ValueRange {
 /// ranges.size() numbers of x. Requires x.size() <= kMostInputs + kMostTerms. Allocates nothing.
 ScaledSample within_ranges(std::span<const ValueRange> ranges, std::span<const double> x);
 
-/// A function and its weight in a weighted mean.
-struct WeightedFunction {
-  double share = 1.0;
-  const SvrFunction* function = nullptr;
-};
-
-/// The weighted mean of functions, each clamped to the limits, on scaled samples with the terms
-/// within their ranges:
+/// A weighted mean of functions, each clamped to the limits, on scaled samples with the terms
+/// within their ranges, beside the physics terms of a vehicle known beforehand: the functions then
+/// say what that vehicle leaves.
 ///
 ///     f = Σ s_k f_k,  f_k = clamp(f_k(within_ranges(x)), low, high)
 ///
@@ -47,24 +42,12 @@ struct WeightedFunction {
 ///
 /// The disagreement of models of the same data estimates the variance of a prediction (ensembles:
 /// Krogh & Vedelsby 1995), and a mean with this variance is shrunk as by James & Stein (1961).
-/// Requires shares with the sum 1. Cost: the sum over the functions. Allocates nothing; safe from
-/// many threads.
-double mixed_value(std::span<const WeightedFunction> functions, const Limits& limits,
-                   std::span<const ValueRange> ranges, std::span<const double> x);
-
-/// mixed_value(), equal to rounding, and its gradient by z and φ; beyond the limits a function has
-/// the slope 0, as has the mean by a term beyond the term's range. Requires finite x and room for
-/// x.size() <= kMostInputs + kMostTerms values.
-double mixed_value_with_gradient(std::span<const WeightedFunction> functions, const Limits& limits,
-                                 std::span<const ValueRange> ranges, std::span<const double> x,
-                                 std::span<double> gradient);
-
-/// A weighted mean of functions, with copies of the functions, beside the physics terms of a
-/// vehicle known beforehand: the functions then say what that vehicle leaves.
+/// Shares have the sum 1. Holds copies of the functions. Predictions cost the sum over the
+/// functions, allocate nothing, and are safe from many threads.
 struct FunctionMix {
   /// A function with name and weight.
   struct Member {
-    std::string name;  ///< of a committee's member
+    std::string name;  ///< of a mixture's member
     double share = 1.0;
     SvrFunction function;
   };
@@ -74,8 +57,10 @@ struct FunctionMix {
   std::vector<ValueRange> term_ranges{};  ///< one per physics term; empty: unlimited
   std::vector<double> nominal{};  ///< weights of the vehicle known, one per term; empty: none
 
-  double operator()(std::span<const double> x) const;  ///< mixed_value(), and the vehicle known
-  /// mixed_value_with_gradient(), and the vehicle known
+  double operator()(std::span<const double> x) const;  ///< The value, and the vehicle known.
+  /// The value, equal to rounding, and its gradient by z and φ; beyond the limits a function has
+  /// the slope 0, as has the mean by a term beyond the term's range. Requires finite x and room for
+  /// x.size() <= kMostInputs + kMostTerms values.
   double with_gradient(std::span<const double> x, std::span<double> gradient) const;
 
   /// The range of a physics term.

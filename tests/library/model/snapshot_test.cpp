@@ -72,7 +72,7 @@ std::vector<Slopes> terms_of(const TrainedModel::Axis& axis, const std::array<Sl
 
 // Value and gradient of an axis by the formula of reference/files.md, from what the model
 // publishes.
-// mixed_value() from the members' values.
+// The value of the mix from the members' values.
 Slopes with_caution(const FunctionMix& mix, const std::vector<Slopes>& values) {
   Slopes mean(0.0, Eigen::Vector3d::Zero());
   Slopes others = mean;
