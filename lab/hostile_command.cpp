@@ -59,8 +59,8 @@ struct HostileArguments {
 struct HostileRun {
   // By seed and axis; −∞ where not finite.
   std::array<std::vector<double>, kLearners.size()> late_r2;
-  // Of kelpie: samples with a prediction beyond the targets so far; with a prediction that is not
-  // finite; reported changes of the vehicle, of all axes.
+  // Of kelpie: samples with a prediction beyond the targets so far and the true one; with a
+  // prediction that is not finite; reported changes of the vehicle, of all axes.
   std::int64_t beyond = 0;
   std::int64_t not_finite = 0;
   std::int64_t changes = 0;
@@ -149,8 +149,9 @@ void teach(OnlineModel& model, const HostileStream& stream, HostileRun& run) {
     // Few targets tell little about the range (SeenRange).
     const Eigen::ArrayXd margin = (i < kFewRows ? 1.0 : kMargin) * (greatest - least);
     run.not_finite += predicted.allFinite() ? 0 : 1;
-    run.beyond +=
-        i > 0 && (predicted < least - margin || predicted > greatest + margin).any() ? 1 : 0;
+    const Eigen::ArrayXd low = least.min(stream.y.col(i).array()) - margin;
+    const Eigen::ArrayXd high = greatest.max(stream.y.col(i).array()) + margin;
+    run.beyond += i > 0 && (predicted < low || predicted > high).any() ? 1 : 0;
     if (!held_out(i)) {
       least = least.min(stream.y.col(i));
       greatest = greatest.max(stream.y.col(i));
@@ -261,7 +262,7 @@ std::string study_table(const Json& json) {
   const auto total = [&](const char* name) { return json["all"][name].get<int>(); };
   table.notes = {fmt::format(
       "{} of {} kinds more than {} behind the best yardstick; {} of {} axes below {}; {} "
-      "predictions beyond the targets so far, {} not finite",
+      "predictions beyond the targets so far and the true one, {} not finite",
       total("kinds_behind"), json["kinds"].size(), kMostBehind, total("axes_too_low"),
       total("axes"), chart::decimal(kLeastR2), total("beyond"), total("not_finite"))};
   table.whole = true;

@@ -414,9 +414,10 @@ Status PosteriorAxis::status() const {
 
 std::vector<Coefficient> PosteriorAxis::coefficients() const {
   std::vector<Coefficient> list;
-  for (std::size_t k = 0; posterior_.ready() && k < terms().size(); ++k) {
+  for (std::size_t k = 0; has_scale_ && k < terms().size(); ++k) {
     list.push_back({.term = terms().text(k),
-                    .value = posterior_.weights()[k + 1] + known(k + 1),
+                    .value = scaling_.target.scale * mixture_.function().term_weight(k) /
+                             scaling_.term_scale[k],
                     .error = posterior_.error(k + 1)});
   }
   return list;

@@ -75,8 +75,12 @@ void PastVehicles::leave(const Posterior& live, double since_s,
                          std::span<const std::uint8_t> group) {
   const PastModelInfo info{.from_s = begun_s_, .until_s = since_s, .samples = rows_};
   const double tau = live.rows_per_sample();
-  const bool is_known = live.ready() && live.sums().rows >= kPosterior.kept * tau;
-  std::optional<std::size_t> place;
+  const auto terms = static_cast<double>(live.first_weights().size());
+  // Rows since the change are of the next vehicle.
+  const double served = last_s_ > begun_s_ ? (since_s - begun_s_) / (last_s_ - begun_s_) : 0.0;
+  const bool is_known = live.ready() && static_cast<double>(rows_) * served >=
+                                            kPosterior.samples_per_term * terms * tau;
+  std::optional<std::size_t> place = in_service_;
   if (places_.size() > 1 && is_known) {
     PastVehicle& left = places_[size_];
     left.info = info;

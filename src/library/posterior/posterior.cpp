@@ -128,9 +128,7 @@ bool Posterior::differ() const {
 }
 
 bool Posterior::wants_solve() const {
-  const double enough =
-      std::max(kPosterior.rows_per_feature * static_cast<double>(seen_.gram.size()),
-               std::min(kPosterior.solve_share * seen_.rows, kPosterior.most_unsolved));
+  const double enough = kPosterior.rows_per_feature * static_cast<double>(seen_.gram.size());
   const bool is_due = seen_.rows >= kPosterior.first_rows && seen_.rows - served_at_ >= enough;
   return task_ != Task::none || (is_due && differ());
 }

@@ -14,9 +14,7 @@ inline constexpr struct PosteriorTuning {
   double most_deviations = 4.0;    ///< of an error in τ; by hand
   double first_rows = 10.0;        ///< rows before the first solve; by hand
   double least_deviation = 1e-12;  ///< of targets, per mean: rounding
-  double solve_share = 0.05;       ///< rows between solves per row so far; by hand
-  double most_unsolved = 10.0;     ///< rows between solves, at most; from 5 to 100 on ../data
-  double rows_per_feature = 0.03;  ///< rows between solves, at least, per feature; likewise
+  double rows_per_feature = 0.04;  ///< rows between solves, per feature; from 0.01 to 0.04 by hand
   double recalled_rows = 100.0;    ///< without a solve after a recall; by hand
   double widths_growth = 1.1;      ///< of rows between steps of the evidence; by hand
   double young_rows = 200.0;       ///< up to which a solve has more rounds; by hand
@@ -66,6 +64,8 @@ inline constexpr struct PosteriorTuning {
   double least_error = 0.02;     ///< square of an error, in variances of the noise; by hand
   double most_correlated = 0.2;  ///< τ of a young posterior, per row; by hand
   double kept = 50.0;  ///< independent samples of before a change; from 50, 150, 1,000 on ../data
+  double samples_per_term =
+      10.0;  ///< independent, of a past vehicle: ten per parameter (Harrell 2015)
   std::size_t places_told = 1000;     ///< of a trained model; from 300 to 3,000 on a plant
   double deviations_per_width = 0.5;  ///< of errors, per half an interval of 90 %; by hand
   double unknown_spread = 0.3;        ///< of errors, per deviation of the target; by hand

@@ -146,6 +146,10 @@ double FunctionMix::with_gradient(std::span<const double> x, std::span<double> g
 }
 
 double FunctionMix::term_weight(std::size_t k) const {
+  const auto posterior = std::ranges::find(members, "posterior", &Member::name);
+  if (posterior != members.end()) {
+    return nominal_weight(k) + posterior->function.term_weights()[k];
+  }
   double sum = nominal_weight(k);
   for (const Member& member : members) {
     sum += member.share * member.function.term_weights()[k];
