@@ -11,10 +11,10 @@
 #include <limits>
 #include <vector>
 
-#include "kelpie/alignment/alignment.hpp"
 #include "kelpie/motion/attitude.hpp"
 #include "log/regression_columns.hpp"
 #include "log/tuning.hpp"
+#include "motion/states.hpp"
 
 namespace kelpie::log {
 namespace {
@@ -30,6 +30,23 @@ std::vector<double> column_of(const Dataset& data, bool is_input, std::size_t pl
     column.push_back((is_input ? data.input(row) : data.target(row))[place]);
   }
   return column;
+}
+
+// The inputs that are neither velocities nor angles; empty where no velocity is known.
+std::vector<std::size_t> commands_of(const Dataset& data, const std::string& states) {
+  std::vector<std::size_t> velocities =
+      find_states(states, data.input_names, data.target_names.size());
+  for (std::size_t input = 0; input < named_velocities(data.input_names); ++input) {
+    velocities.push_back(input);
+  }
+  const Attitude attitude = find_attitude(data.input_names);
+  std::vector<std::size_t> commands;
+  for (std::size_t input = 0; input < data.input_names.size() && !velocities.empty(); ++input) {
+    if (std::ranges::count(velocities, input) == 0 && !attitude.contains(input)) {
+      commands.push_back(input);
+    }
+  }
+  return commands;
 }
 
 // Means of some columns over blocks of time; NaN where a block has few rows.
@@ -262,8 +279,7 @@ std::optional<Mistake> command_clock_mistake(const Dataset& data, const std::str
   const double step_s = std::max(kCommands.step_s, 1.0 / data.rate_hz);
   const auto most = static_cast<std::ptrdiff_t>(
       std::min(kCommands.farthest_s, kCommands.longest_part * duration_s) / step_s);
-  const std::vector<std::size_t> commands =
-      named_commands(data.input_names, data.target_names.size(), states);
+  const std::vector<std::size_t> commands = commands_of(data, states);
   if (commands.empty() || duration_s < kCommands.least_s || most < 1) {
     return std::nullopt;
   }
@@ -280,7 +296,7 @@ std::optional<Mistake> command_clock_mistake(const Dataset& data, const std::str
       std::abs(shift_s), shift_s > 0.0 ? "late" : "early", shift_s > 0.0 ? "later" : "earlier",
       100.0 * (1.0 - std::exp(-found.gain)));
   const std::string remedy =
-      std::abs(shift_s) <= Alignment::kMostS
+      std::abs(shift_s) <= kCommands.most_aligned_s
           ? fmt::format("--align {:.3g} takes them so", shift_s)
           : fmt::format(
                 "shift the columns of the commands, or their messages by lag = {:.3g} in "

@@ -279,7 +279,6 @@ bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) 
   }
   try {
     Roles all = roles;
-    all.ignored.clear();  // whoever uses the table refuses a name that is no column
     all.also.clear();
     guess_roles(table, all);
     return true;
@@ -324,6 +323,7 @@ Roles over(const Roles& wanted, const Roles& drafted) {
   std::erase_if(roles.inputs, [&](const std::string& name) {
     return std::ranges::count(wanted.ignored, name) > 0;
   });
+  roles.ignored.clear();  // rows of a draft have no other columns
   fill(roles.actuators, drafted.actuators);
   return roles;
 }
@@ -456,6 +456,9 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
   }
   if (config.makes_samples()) {
     return sampled_log(source, is_of_bag, std::move(table), config, roles);
+  }
+  for (const std::string& name : is_of_bag ? std::vector<std::string>{} : roles.ignored) {
+    table.find(name);
   }
   std::string why_not;
   if (!is_of_bag && !has_pose && can_be_taken(table, roles, why_not)) {

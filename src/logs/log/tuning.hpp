@@ -108,6 +108,7 @@ inline constexpr struct Tuning {
     double least_gain = 0.2;                ///< logarithm; sound logs: up to 0.03
     double certain_gain = 0.5;              ///< from here on refused
     double agreement_s = 2.0;               ///< between the halves of the log
+    double most_aligned_s = 10.0;           ///< that --align takes: Alignment::kMostS
   } command_clock;
 
   /// The window of a pose (find_pose_window()).
