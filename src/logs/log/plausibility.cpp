@@ -63,8 +63,8 @@ struct KnownClock {
 constexpr std::array kClocks =
     std::to_array<KnownClock>({{1e3, "ms"}, {1e6, "µs"}, {1e9, "ns"}, {1.0 / 60.0, "min"}});
 
-bool near(double ratio, double known) {
-  return std::abs(std::log(ratio / known)) <= std::log1p(kLimits.near);
+bool near(double one, double other) {
+  return std::abs(std::log(one / other)) <= std::log1p(kLimits.near);
 }
 
 bool is_plain(double ratio) {

@@ -347,7 +347,8 @@ void drop_second_sets(const Table& table, Roles& roles, std::vector<LeftOut>& le
 std::vector<LeftOut> add_inputs(const Table& table, const Header& header, Roles& roles) {
   std::vector<LeftOut> left_out;
   const std::vector<KnownColumn> motion = motion_of(table, roles);
-  constexpr std::size_t kEnough = 8 * kMostInputs;  // however many of them are second sets
+  constexpr std::size_t kEnough =
+      std::size_t{8} * kMostInputs;  // however many of them are second sets
   for (std::size_t column = 0; column < table.names.size() && roles.inputs.size() < kEnough;
        ++column) {
     if (!header.can_be_input(table.names[column], roles)) {

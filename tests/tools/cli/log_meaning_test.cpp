@@ -572,6 +572,24 @@ TEST_F(LogMeaning, GravityInAnAcceleration) {
           {log(9.81), "--ignore udot", 0, kTwoMinutes}});
 }
 
+TEST_F(LogMeaning, ShortLogsOfPoses) {
+  const auto log = [](double step_s, int rows) {
+    return log_of({{"t", number(&Row::t)},
+                   {"x", number(&Row::x)},
+                   {"y", number(&Row::y)},
+                   {"psi", number(&Row::psi)},
+                   {"n1", number(&Row::n1)},
+                   {"n2", number(&Row::n2)}},
+                  ",", step_s, rows);
+  };
+  write("log.csv", log(0.02, 1500));
+  testing::succeeded(run("inspect log.csv --template fast.toml"));
+  EXPECT_NE(content("fast.toml").find("\nrate = 10 "), std::string::npos);
+  write("log.csv", log(4.0, 150));
+  testing::expect_refused(run("learn log.csv --out out"),
+                          "poses come every 4 s, which takes a window of 28 s at least");
+}
+
 // A word beyond "fair" is earned.
 TEST_F(LogMeaning, WordsOfTheVerdict) {
   Columns timed{{"t", number(&Row::t)}};
