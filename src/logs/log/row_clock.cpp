@@ -191,12 +191,17 @@ double memory_rows(const std::vector<double>& values) {
     }
     return sum / static_cast<double>(std::max<std::size_t>(values.size() - lag, 1));
   };
-  const double all = product(0);
+  const double half = 0.5 * product(0);
   std::size_t lag = 1;
-  while (lag < values.size() && product(lag) > 0.5 * all) {
+  while (lag < values.size() && product(lag) > half) {
     lag *= 2;
   }
-  return static_cast<double>(std::min(lag, values.size()));
+  if (lag >= values.size() || half <= 0.0) {
+    return static_cast<double>(std::min(lag, values.size()));
+  }
+  const double before = product(lag / 2);
+  const auto first = static_cast<double>(lag / 2);
+  return first + (static_cast<double>(lag) - first) * (before - half) / (before - product(lag));
 }
 
 std::string time_order_problem(const Table& table, std::size_t column, double most_s,

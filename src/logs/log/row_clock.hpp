@@ -26,8 +26,9 @@ RowClock row_clock(const Table& table, const Roles& given);
 std::vector<double> row_times_s(const Table& table, const std::string& time, double rate_hz,
                                 bool with_words = false);
 
-/// The rows that a signal takes to forget half of itself (autocorrelation), as a power of two; all
-/// rows where it never does. Cost O(rows), times the logarithm of the result.
+/// The rows after which a signal's autocorrelation has fallen to one half, between powers of two in
+/// a straight line; all rows where the signal never forgets so much, 1 of a constant. Cost O(rows),
+/// times the logarithm of the result.
 double memory_rows(const std::vector<double>& values);
 
 /// Sets the unit of the time's column where nobody gave one and its name (time_ms) or its size (ms

@@ -607,7 +607,7 @@ TEST_F(LogMeaning, WordsOfTheVerdict) {
   const Outcome sound = testing::succeeded(run("learn log.csv --out out"));
   EXPECT_NE(sound.out.find("good"), std::string::npos) << sound.out;
   EXPECT_EQ(sound.out.find("WARNING"), std::string::npos) << sound.out;
-  expect({{log_of(timed, ",", 0.2, 280), "", 0, "R² says little of other drives"},
+  expect({{log_of(timed, ",", 0.2, 130), "--set warmup=50", 0, "R² says little of other drives"},
           {log_of(timed), "--split random", 0, "R² says little of other drives"},
           {log_of({{"t", number(&Row::t)},
                    {"u", number(&Row::u)},
