@@ -222,6 +222,18 @@ Roles without_constants(const Table& table, Roles roles);
 /// the reasons, for the user: a line each.
 std::string left_out_text(const Table& table, const Roles& given);
 
+/// A column beside others.
+struct KnownColumn {
+  std::string name;
+  std::span<const double> values;
+  bool is_target = false;
+};
+
+/// Of a column whose name is no command's, a velocity's or an angle's, the target or velocity that
+/// its values nearly copy (as many rows), perhaps some rows later or earlier: "goes with u, read 1
+/// rows later: correlation 0.99"; or "". Cost: seven passes per column of the motion.
+std::string near_copy_of(const KnownColumn& column, const std::vector<KnownColumn>& motion);
+
 /// Selects the columns by name. Rows with a NaN or infinity in a used column are skipped; equal
 /// time stamps are allowed; unused columns have no effect. Throws InputError (file, line, column)
 /// on a missing column, a duplicate role, no inputs, no targets, text in a used column, a used

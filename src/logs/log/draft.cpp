@@ -21,7 +21,8 @@ namespace {
 std::optional<Draft> draft_of_ready(const Table& table, const Roles& given) {
   Draft draft;
   try {
-    const Roles found = guess_roles(table, {.time = given.time, .rate_hz = given.rate_hz});
+    const Roles found = guess_roles(
+        table, {.time = given.time, .rate_hz = given.rate_hz, .ignored = given.ignored});
     draft.config.roles = {.inputs = found.inputs,
                           .targets = found.targets,
                           .time = found.time,

@@ -128,8 +128,11 @@ void choose_rate(const RowClock& clock, const SignalRates& rates, Draft& draft) 
     }
     return;
   }
-  const double wanted = std::clamp(kTuning.wanted_rows / std::max(rates.duration_s, 1.0),
-                                   kTuning.usual_rate_hz, kTuning.fastest_rate_hz);
+  // Windows of poses overlap: more rows of a short log tell no more.
+  const double wanted = is_of_poses
+                            ? kTuning.usual_rate_hz
+                            : std::clamp(kTuning.wanted_rows / std::max(rates.duration_s, 1.0),
+                                         kTuning.usual_rate_hz, kTuning.fastest_rate_hz);
   double rate_hz = std::min(wanted, rates.moving_hz);
   rate_hz = rate_hz > 1.0 ? std::floor(rate_hz + 0.1) : rate_hz;
   draft.whys["rate"] = rate_hz < wanted - 1.0                 ? "velocities come no faster"

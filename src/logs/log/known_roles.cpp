@@ -135,6 +135,7 @@ using Where = OtherName::Where;
 constexpr std::string_view kMeasurement = "a measurement, no command; --inputs takes it";
 constexpr std::string_view kAcceleration = "an acceleration; --inputs takes it";
 constexpr std::string_view kDemand = "a demand to a controller, no command; --inputs takes it";
+constexpr std::string_view kDemandWords = "reference# setpoint# desired wanted ref#";
 constexpr std::array kOtherNames = std::to_array<OtherName>({
     {Where::whole, "run index idx row seq count frame window trial sample iteration", "a counter"},
     {Where::last, "step", "a counter"},
@@ -159,7 +160,7 @@ constexpr std::array kOtherNames = std::to_array<OtherName>({
      "imu temp temps temperature# sat sats nsats satellites humidity rssi snr gain gains sigma "
      "vacuum leak cpu hdop pdop vdop salinity conductivity turbidity",
      kMeasurement},
-    {Where::word, "reference# setpoint# desired wanted ref#", kDemand},
+    {Where::word, kDemandWords, kDemand},
     {Where::command,
      "time stamp timestamp secs nsecs sec nanosec seq current voltage covariance mode error err "
      "limit min max status_code fault armed enabled id index count true power",
@@ -322,6 +323,10 @@ bool is_among_words(std::string_view words, std::string_view word) {
 bool is_command_word(std::string_view word) {
   return std::ranges::any_of(
       kCommandWords, [&](const CommandWords& known) { return is_among_words(known.words, word); });
+}
+
+bool is_demand_word(std::string_view word) {
+  return is_among_words(kDemandWords, word);
 }
 
 std::span<const KnownAffix> known_affixes() {

@@ -49,6 +49,7 @@ struct CommandWords {
 std::span<const KnownMessage> known_messages();
 std::span<const CommandWords> known_command_words();
 bool is_command_word(std::string_view word);  ///< One of these, numbered or not.
+bool is_demand_word(std::string_view word);   ///< Of a demand to a controller: "reference".
 /// Whether blanks separate the word, or its letters before a '#', among `words`.
 bool is_among_words(std::string_view words, std::string_view word);
 /// Why a signal of this name is no input of a model, as far as the name alone tells: "a counter",

@@ -12,7 +12,9 @@
 #include <utility>
 
 #include "core/quantile.hpp"
+#include "kelpie/motion/attitude.hpp"
 #include "kelpie/motion/unit.hpp"
+#include "log/command_clock.hpp"
 #include "log/pair_moments.hpp"
 #include "log/tuning.hpp"
 #include "motion/states.hpp"
@@ -21,6 +23,7 @@ namespace kelpie::log {
 namespace {
 
 constexpr const auto& kLimits = kTuning.plausibility;
+constexpr double kGravity = 9.81;  // m/s²
 
 // How a target goes with the slope of a velocity over the same windows of time.
 struct TargetCheck {
@@ -60,19 +63,35 @@ struct KnownClock {
 constexpr std::array kClocks =
     std::to_array<KnownClock>({{1e3, "ms"}, {1e6, "µs"}, {1e9, "ns"}, {1.0 / 60.0, "min"}});
 
-bool near(double ratio, double known) {
-  return std::abs(std::log(ratio / known)) <= std::log1p(kLimits.near);
+bool near(double one, double other) {
+  return std::abs(std::log(one / other)) <= std::log1p(kLimits.near);
 }
 
 bool is_plain(double ratio) {
   return ratio >= kLimits.least_ratio && ratio <= kLimits.most_ratio;
 }
 
-// Pairs of slopes of a velocity and means of a target over windows without a gap.
+// Pairs of slopes of a velocity and means of a target over windows without a gap; with an angle
+// pairs of the angle's sine and the target's mean beyond the slope.
 class Windows {
  public:
   Windows(const Dataset& data, std::size_t velocity, std::size_t target)
       : data_(data), velocity_(velocity), target_(target) {}
+
+  /// Moments of the sine of an angle (an input, `unit` in rad) and the target beyond the slope.
+  PairMoments beside_angle(std::size_t angle, double unit, std::size_t length) const {
+    PairMoments moments;
+    const auto step = static_cast<std::ptrdiff_t>(length);
+    for (std::ptrdiff_t i = 0; i + step < std::ssize(data_.times_s); i += step) {
+      const std::optional<double> x = slope(i, step);
+      const std::optional<double> y = mean(i, step);
+      const auto middle = static_cast<std::size_t>(i + step / 2);
+      if (x && y) {
+        moments.add(std::sin(unit * data_.input(middle)[angle]), *y - *x);
+      }
+    }
+    return moments;
+  }
 
   /// Moments of slopes and means for windows of `length` rows, the target read `late` rows later;
   /// empty for too few windows, or without motion.
@@ -190,6 +209,37 @@ std::optional<TargetCheck> check_target(const Dataset& data, std::size_t velocit
     }
   }
   return measured ? std::optional(check) : std::nullopt;
+}
+
+// Gravity in the acceleration of surge or sway, as an accelerometer measures it: the specific
+// force.
+std::optional<Mistake> gravity_mistake(const Dataset& data, std::size_t velocity,
+                                       std::size_t target) {
+  const Attitude attitude = find_attitude(data.input_names);
+  const std::optional<std::size_t> axis = velocity_axis(data.input_names[velocity]);
+  const std::optional<std::size_t> angle = axis == 0   ? attitude.pitch
+                                           : axis == 1 ? attitude.roll
+                                                       : std::nullopt;
+  if (!angle) {
+    return std::nullopt;
+  }
+  const std::size_t length =
+      std::max(kLimits.least_rows, rows_in(kLimits.windows_s.front(), data.rate_hz));
+  const PairMoments moments =
+      Windows(data, velocity, target)
+          .beside_angle(*angle, axis == 0 ? attitude.pitch_unit : attitude.roll_unit, length);
+  const double slope = moments.varies() ? moments.xy / moments.xx : 0.0;
+  if (moments.n < kLimits.least_windows ||
+      std::abs(moments.correlation()) < kLimits.least_correlation ||
+      !near(std::abs(slope), kGravity)) {
+    return std::nullopt;
+  }
+  return Mistake{
+      fmt::format("{} lies beside the slope of {} by {:.3g} m/s² times the sine of {}: a specific "
+                  "force with gravity, as an accelerometer measures it",
+                  data.target_names[target], data.input_names[velocity], slope,
+                  data.input_names[*angle]),
+      "take gravity off, or leave the accelerations out: slopes of the velocities do"};
 }
 
 // The input whose derivative the target is.
@@ -374,7 +424,8 @@ std::optional<Mistake> absurd_values(const Dataset& data, std::size_t input) {
                  "a sensor's mark of no value? Leave such cells empty", false};
 }
 
-std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states) {
+std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& states,
+                                       std::vector<Mistake>& gravity) {
   const std::vector<std::size_t> found =
       find_states(states, data.input_names, data.target_names.size());
   std::vector<TargetCheck> checks;
@@ -382,7 +433,9 @@ std::vector<TargetCheck> check_targets(const Dataset& data, const std::string& s
     const bool is_derived = std::ranges::count(data.derived, data.target_names[target]) > 0;
     const auto velocity = is_derived ? std::nullopt : velocity_of(data, found, target);
     if (velocity) {
-      if (const auto check = check_target(data, *velocity, target)) {
+      if (const auto mistake = gravity_mistake(data, *velocity, target)) {
+        gravity.push_back(*mistake);
+      } else if (const auto check = check_target(data, *velocity, target)) {
         checks.push_back(*check);
       }
     }
@@ -441,15 +494,19 @@ std::vector<Mistake> clock_mistakes(const Dataset& data) {
   return found;
 }
 
-std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states) {
-  const std::vector<TargetCheck> checks = check_targets(data, states);
+std::vector<Mistake> target_mistakes(const Dataset& data, const std::string& states,
+                                     double align_s) {
   std::vector<Mistake> found;
+  const std::vector<TargetCheck> checks = check_targets(data, states, found);
   const std::optional<Mistake> clock = clock_mistake(data, checks);
   if (clock) {
     found.push_back(*clock);
   }
   for (const TargetCheck& check : checks) {
     add_mistakes_of(check, !clock, found);
+  }
+  if (const auto late = command_clock_mistake(data, states, align_s)) {
+    found.push_back(*late);
   }
   return found;
 }

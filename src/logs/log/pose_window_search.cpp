@@ -81,6 +81,14 @@ class PoseWindowSearch {
         choice.tried.push_back(tried);
       }
     }
+    if (shortest_s > longest_s) {
+      throw InputError(
+          "window",
+          fmt::format("poses come every {:.3g} s, which takes a window of {:.3g} s at least; in "
+                      "the {:.3g} s of the log that the search takes such windows are too few: "
+                      "give the window in s, or a longer log",
+                      slowest_step_s(), 2.0 * shortest_s, last_s() - first_s()));
+    }
     if (choice.tried.empty()) {
       throw InputError("window",
                        fmt::format("no window between {:.3g} and {:.3g} s has rows enough to find "

@@ -128,17 +128,38 @@ std::size_t drop_invalid(const bag::Series& series, const LogConfig& config, con
   return static_cast<std::size_t>(std::ranges::unique(rows).begin() - rows.begin());
 }
 
-// Of the velocities over ground that come in one message.
-Rows zeros_of(const bag::Series& series, const LogConfig& config, const Roles& roles) {
+// The velocities up to an axis that come in one message.
+std::vector<std::span<const double>> velocities_of(const bag::Series& series,
+                                                   const SamplingPlan& plan, std::size_t axes) {
   std::vector<std::span<const double>> velocities;
-  for (const SamplingPlan::Source& source : config.plan.sources) {
-    const std::optional<std::size_t> axis = velocity_axis(source.name);
+  for (const SamplingPlan::Source& source : plan.sources) {
     const std::size_t column = series.column(source.from);
-    if (axis && *axis < 3 && column < series.names.size()) {
+    if (velocity_axis(source.name).value_or(axes) < axes && column < series.names.size()) {
       velocities.emplace_back(series.values[column]);
     }
   }
-  return zero_rows(velocities, roles);
+  return velocities;
+}
+
+// Messages of exact zeros in all velocities over ground, or with a frozen one.
+Rows unmeasured_rows(const bag::Series& series, const SamplingPlan& plan,
+                     const SamplingPlan::Source& source, const Roles& roles) {
+  constexpr std::size_t kOverGround = 3;
+  constexpr std::size_t kAll = 6;
+  const std::optional<std::size_t> axis = velocity_axis(source.name);
+  if (!axis) {
+    return {};
+  }
+  Rows rows;
+  if (*axis < kOverGround) {
+    rows = zero_rows(velocities_of(series, plan, kOverGround), roles);
+  }
+  const std::vector<std::span<const double>> all = velocities_of(series, plan, kAll);
+  const double* const own = series.values[series.column(source.from)].data();
+  const auto place = std::ranges::find(all, own, [](const auto& one) { return one.data(); });
+  const Rows frozen = frozen_rows(all, static_cast<std::size_t>(place - all.begin()), roles);
+  rows.insert(rows.end(), frozen.begin(), frozen.end());
+  return rows;
 }
 
 // Those of the plan's sources.
@@ -195,10 +216,9 @@ BagSignals signals_of_bag(const LogSource& source, const LogConfig& config,
   for (const SamplingPlan::Source& column : config.plan.sources) {
     const bag::Series& series = bag::series_with(all, column.from);
     found.signals.push_back(signal_of(column, series, found.origin_ns));
-    const bool is_over_ground = velocity_axis(column.name).value_or(3) < 3;
-    if (const std::size_t count = drop_invalid(
-            series, config, roles, is_over_ground ? zeros_of(series, config, roles) : Rows{},
-            found.signals.back())) {
+    if (const std::size_t count =
+            drop_invalid(series, config, roles, unmeasured_rows(series, config.plan, column, roles),
+                         found.signals.back())) {
       found.losses += fmt::format("{}: {} of {} messages are no measurement of {}{}\n", source.path,
                                   count, series.times_ns.size(), column.name,
                                   count < series.times_ns.size()
@@ -259,7 +279,6 @@ bool can_be_taken(const Table& table, const Roles& roles, std::string& why_not) 
   }
   try {
     Roles all = roles;
-    all.ignored.clear();  // whoever uses the table refuses a name that is no column
     all.also.clear();
     guess_roles(table, all);
     return true;
@@ -304,6 +323,7 @@ Roles over(const Roles& wanted, const Roles& drafted) {
   std::erase_if(roles.inputs, [&](const std::string& name) {
     return std::ranges::count(wanted.ignored, name) > 0;
   });
+  roles.ignored.clear();  // rows of a draft have no other columns
   fill(roles.actuators, drafted.actuators);
   return roles;
 }
@@ -436,6 +456,9 @@ Log log_of(const LogSource& source, bool is_of_bag, Table table, const LogConfig
   }
   if (config.makes_samples()) {
     return sampled_log(source, is_of_bag, std::move(table), config, roles);
+  }
+  for (const std::string& name : is_of_bag ? std::vector<std::string>{} : roles.ignored) {
+    table.find(name);
   }
   std::string why_not;
   if (!is_of_bag && !has_pose && can_be_taken(table, roles, why_not)) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <unordered_set>
@@ -84,9 +85,13 @@ class Header {
     throw InputError({.file = table_.source, .field = part}, message + "; " + columns_text(table_));
   }
 
+  // "dr" beside rdot is a rudder.
   bool is_acceleration(std::string_view name) const {
-    return std::ranges::any_of(differentiated(without_unit(name)),
-                               [&](std::string_view stem) { return is_quantity(stem); });
+    const std::string_view whole = without_unit(name);
+    return std::ranges::any_of(differentiated(whole), [&](std::string_view stem) {
+      const bool is_other = whole.ends_with(stem) && has_dotted(stem);
+      return is_quantity(stem) && !is_other;
+    });
   }
 
   // Whether it would be an input if it holds numbers.
@@ -110,6 +115,12 @@ class Header {
   // Whether `stem` is a column that another can be named after: "dt" beside "t" is no acceleration.
   bool is_quantity(std::string_view stem) const {
     return names_.contains(stem) && !is_among(stem, kTimeNames);
+  }
+  bool has_dotted(std::string_view stem) const {
+    return std::ranges::any_of(names_, [&](std::string_view name) {
+      return name.starts_with(stem) &&
+             (name.substr(stem.size()) == "dot" || name.substr(stem.size()) == "_dot");
+    });
   }
   // As kelpie simulates it.
   bool is_true_value(std::string_view name) const {
@@ -148,47 +159,132 @@ std::string reason_by_affix(const Table& table, const std::string& name) {
   return "";
 }
 
-// Of a column whose name is no command's and that nearly copies a velocity or target, perhaps some
-// rows later or earlier, what it copies.
-std::string near_copy_of(const Table& table, std::size_t column, const Roles& roles) {
-  constexpr double kNearCopy = 0.98;  // correlation, by hand
-  constexpr double kNearTarget =
-      0.995;  // a force of a vehicle without much drag comes near; by hand
-  constexpr std::ptrdiff_t kMostShift = 3;
-  constexpr std::ptrdiff_t kFewRows = 100;
-  const std::string& name = table.names[column];
-  const std::span<const double> values = values_of(table, column);
-  if (std::ranges::any_of(words_of(name), is_command_word) || velocity_by_name(name) ||
-      std::ssize(values) < kFewRows) {
-    return "";
+// Targets and their velocities.
+std::vector<KnownColumn> motion_of(const Table& table, const Roles& roles) {
+  std::vector<KnownColumn> motion;
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    const std::string& name = table.names[column];
+    const bool is_target = is_among(name, roles.targets);
+    if (is_target || is_state(name, roles)) {
+      motion.push_back({name, values_of(table, column), is_target});
+    }
   }
-  std::string copied;
-  double best = 0.0;
-  for (std::size_t other = 0; other < table.names.size(); ++other) {
-    const std::string& known = table.names[other];
-    const bool is_target = is_among(known, roles.targets);
-    for (std::ptrdiff_t shift = -kMostShift;
-         shift <= kMostShift && (is_target || is_state(known, roles)); ++shift) {
-      PairMoments moments;
-      for (std::ptrdiff_t row = kMostShift; row + kMostShift < std::ssize(values); ++row) {
-        moments.add(values[static_cast<std::size_t>(row)],
-                    values_of(table, other)[static_cast<std::size_t>(row + shift)]);
-      }
-      const double least = is_target ? kNearTarget : kNearCopy;
-      if (std::abs(moments.correlation()) > std::max(best, least)) {
-        best = std::abs(moments.correlation());
-        copied =
-            fmt::format("goes with {}, read {} rows {}: correlation {:.3f}", known, std::abs(shift),
-                        shift < 0 ? "earlier" : "later", moments.correlation());
+  return motion;
+}
+
+// A name such as rpm1 or thr_ref_2 taken apart.
+struct NumberedName {
+  enum class Use { command, force, demand };
+
+  std::string stem;    // "rpm"
+  std::string number;  // "1"; "" without one
+  std::optional<CommandWords::Kind> kind;
+  Use use = Use::command;
+};
+using Use = NumberedName::Use;
+
+NumberedName numbered(const std::string& name) {
+  constexpr std::string_view kForces = "fx# fy# fz# mx# my# mz# tx# ty# tz# force# torque#";
+  NumberedName parts;
+  for (const std::string& word : words_of(name)) {
+    const std::size_t letters = word.find_last_not_of("0123456789") + 1;
+    parts.stem += word.substr(0, letters) + " ";
+    parts.number += word.substr(letters);
+    parts.use = is_demand_word(word)            ? Use::demand
+                : is_among_words(kForces, word) ? Use::force
+                                                : parts.use;
+    for (const CommandWords& known : known_command_words()) {
+      if (is_among_words(known.words, word)) {
+        parts.kind = known.kind;
       }
     }
   }
-  return copied;
+  return parts;
+}
+
+// Columns of the same kind of command, of several thrusters.
+struct NumberedSet {
+  NumberedName name;
+  std::vector<std::string> numbers{};
+  std::vector<std::size_t> columns{};
+};
+
+std::vector<NumberedSet> numbered_sets(const Table& table, const std::vector<std::string>& inputs) {
+  std::vector<NumberedSet> sets;
+  for (const std::string& input : inputs) {
+    const NumberedName parts = numbered(input);
+    if (parts.number.empty() || velocity_by_name(input) || measured_pose_part(input)) {
+      continue;
+    }
+    auto set = std::ranges::find_if(
+        sets, [&](const NumberedSet& one) { return one.name.stem == parts.stem; });
+    if (set == sets.end()) {
+      set = sets.insert(sets.end(), {.name = parts});
+    }
+    set->numbers.push_back(parts.number);
+    set->columns.push_back(table.find(input));
+  }
+  return sets;
+}
+
+// Whether two sets go with each other thruster by thruster, as pulses with the speeds of rotors.
+bool go_together(const Table& table, const NumberedSet& a, const NumberedSet& b) {
+  constexpr double kTogether = 0.8;  // correlation, by hand
+  for (std::size_t k = 0; k < a.columns.size(); ++k) {
+    PairMoments moments;
+    const std::span<const double> x = values_of(table, a.columns[k]);
+    const std::span<const double> y = values_of(table, b.columns[k]);
+    for (std::size_t row = 0; row < x.size(); ++row) {
+      moments.add(x[row], y[row]);
+    }
+    if (std::abs(moments.correlation()) < kTogether) {
+      return false;
+    }
+  }
+  return !values_of(table, a.columns.front()).empty();
+}
+
+// The set that tells of the same thrusters what `set` tells, and is taken in its place; or null.
+// Forces along the axes go before the speeds and angles of azimuth thrusters, of which they are
+// made; else commands go before forces, and before demands in any case.
+const NumberedSet* taken_in_place_of(const Table& table, const NumberedSet& set,
+                                     const std::vector<NumberedSet>& sets) {
+  std::vector<const NumberedSet*> alike;
+  for (const NumberedSet& other : sets) {
+    if (other.numbers == set.numbers && set.numbers.size() > 1) {
+      alike.push_back(&other);
+    }
+  }
+  const auto find = [&](auto is_one) {
+    const auto found = std::ranges::find_if(alike, is_one);
+    return found == alike.end() ? nullptr : *found;
+  };
+  const bool has_angles = find([](const NumberedSet* one) {
+                            return one->name.kind == CommandWords::Kind::angle;
+                          }) != nullptr;
+  const auto taken = [&](Use use) {
+    return find([&](const NumberedSet* one) {
+      return one->name.use == use && (use == Use::force || one->name.kind);
+    });
+  };
+  const NumberedSet* const forces = has_angles ? taken(Use::force) : nullptr;
+  const NumberedSet* const first = forces != nullptr ? forces : taken(Use::command);
+  if (first == nullptr) {
+    return nullptr;
+  }
+  if (set.name.use != first->name.use) {
+    return first;
+  }
+  return find([&](const NumberedSet* one) {
+    return one->columns.front() < set.columns.front() && one->name.kind &&
+           one->name.kind == set.name.kind && go_together(table, *one, set);
+  });
 }
 
 // Why a column that could be an input is left out of the guessed inputs; empty: an input.
-// `roles`: with the inputs so far.
-std::string reason_against(const Table& table, std::size_t column, const Roles& roles) {
+// `roles`: with the inputs so far; `motion`: motion_of().
+std::string reason_against(const Table& table, std::size_t column, const Roles& roles,
+                           const std::vector<KnownColumn>& motion) {
   const std::string& name = table.names[column];
   if (is_among(name, roles.ignored)) {
     return "ignored, as asked";
@@ -207,8 +303,8 @@ std::string reason_against(const Table& table, std::size_t column, const Roles& 
   if (std::string why = why_no_input(name); !why.empty() && !is_velocity) {
     return why;
   }
-  for (const std::string& why :
-       {reason_by_affix(table, name), is_velocity ? "" : near_copy_of(table, column, roles)}) {
+  for (const std::string& why : {reason_by_affix(table, name),
+                                 is_velocity ? "" : near_copy_of({name, values, false}, motion)}) {
     if (!why.empty()) {
       return why + "; --inputs takes it";
     }
@@ -230,24 +326,46 @@ struct LeftOut {
   std::string reason;
 };
 
+// Takes second sets for the same thrusters out of the inputs.
+void drop_second_sets(const Table& table, Roles& roles, std::vector<LeftOut>& left_out) {
+  const std::vector<NumberedSet> sets = numbered_sets(table, roles.inputs);
+  for (const NumberedSet& set : sets) {
+    const NumberedSet* const taken = taken_in_place_of(table, set, sets);
+    for (const std::size_t column : taken == nullptr ? std::vector<std::size_t>{} : set.columns) {
+      const std::string& name = table.names[column];
+      if (!is_among(name, roles.also)) {
+        std::erase(roles.inputs, name);
+        left_out.push_back({column, "a second set for the thrusters of " +
+                                        table.names[taken->columns.front()] +
+                                        "; --inputs takes it"});
+      }
+    }
+  }
+}
+
 // Adds the columns that are inputs to the roles. Returns the others that could be.
 std::vector<LeftOut> add_inputs(const Table& table, const Header& header, Roles& roles) {
   std::vector<LeftOut> left_out;
-  for (std::size_t column = 0; column < table.names.size(); ++column) {
+  const std::vector<KnownColumn> motion = motion_of(table, roles);
+  constexpr std::size_t kEnough =
+      std::size_t{8} * kMostInputs;  // however many of them are second sets
+  for (std::size_t column = 0; column < table.names.size() && roles.inputs.size() < kEnough;
+       ++column) {
     if (!header.can_be_input(table.names[column], roles)) {
       continue;
     }
-    const std::string reason = reason_against(table, column, roles);
+    const std::string reason = reason_against(table, column, roles, motion);
     if (!reason.empty()) {
       left_out.push_back({column, reason});
       continue;
     }
     roles.inputs.push_back(table.names[column]);
-    if (roles.inputs.size() > kMostInputs) {
-      header.refuse("inputs", fmt::format("more than {} columns are left for them, which no model "
-                                          "takes; name them with --inputs",
-                                          kMostInputs));
-    }
+  }
+  drop_second_sets(table, roles, left_out);
+  if (roles.inputs.size() > kMostInputs) {
+    header.refuse("inputs", fmt::format("more than {} columns are left for them, which no model "
+                                        "takes; name them with --inputs",
+                                        kMostInputs));
   }
   return left_out;
 }
@@ -285,6 +403,39 @@ Roles guess_other_roles(const Table& table, const Header& header, const Roles& g
 }
 
 }  // namespace
+
+std::string near_copy_of(const KnownColumn& column, const std::vector<KnownColumn>& motion) {
+  constexpr double kNearCopy = 0.98;  // correlation, by hand
+  constexpr double kNearTarget =
+      0.995;  // a force of a vehicle without much drag comes near; by hand
+  constexpr std::ptrdiff_t kMostShift = 3;
+  constexpr std::ptrdiff_t kFewRows = 100;
+  const std::optional<std::string> part = measured_pose_part(column.name);
+  const std::vector<std::string> words = words_of(column.name);
+  if (std::ranges::any_of(words, is_command_word) || velocity_by_name(column.name) ||
+      part == "roll" || part == "pitch" || std::ssize(column.values) < kFewRows) {
+    return "";
+  }
+  std::string copied;
+  double best = 0.0;
+  for (const KnownColumn& known : motion) {
+    for (std::ptrdiff_t shift = -kMostShift; shift <= kMostShift; ++shift) {
+      PairMoments moments;
+      for (std::ptrdiff_t row = kMostShift; row + kMostShift < std::ssize(column.values); ++row) {
+        moments.add(column.values[static_cast<std::size_t>(row)],
+                    known.values[static_cast<std::size_t>(row + shift)]);
+      }
+      const double least = known.is_target ? kNearTarget : kNearCopy;
+      if (std::abs(moments.correlation()) > std::max(best, least)) {
+        best = std::abs(moments.correlation());
+        copied =
+            fmt::format("goes with {}, read {} rows {}: correlation {:.3f}", known.name,
+                        std::abs(shift), shift < 0 ? "earlier" : "later", moments.correlation());
+      }
+    }
+  }
+  return copied;
+}
 
 std::string usual_time(const Table& table, const Roles& given) {
   if (!given.time.empty() || given.rate_hz > 0.0) {

@@ -67,25 +67,6 @@ std::vector<double> finite_values(const Table& table, std::size_t column) {
   return values;
 }
 
-// How many rows a signal takes to forget half of itself; the number of rows where it never does.
-double memory_rows(const std::vector<double>& values) {
-  double mean = 0.0;
-  std::ranges::for_each(values, [&](double value) { mean += value / double(values.size()); });
-  const auto product = [&](std::size_t lag) {
-    double sum = 0.0;
-    for (std::size_t row = lag; row < values.size(); ++row) {
-      sum += (values[row] - mean) * (values[row - lag] - mean);
-    }
-    return sum / static_cast<double>(std::max<std::size_t>(values.size() - lag, 1));
-  };
-  const double all = product(0);
-  std::size_t lag = 1;
-  while (lag < values.size() && product(lag) > 0.5 * all) {
-    lag *= 2;
-  }
-  return static_cast<double>(std::min(lag, values.size()));
-}
-
 // Of the velocity that changes most; empty where no velocity is known.
 std::optional<double> velocity_memory_rows(const Table& table) {
   std::optional<double> least;
@@ -199,6 +180,29 @@ std::string order_text(const std::vector<double>& times, double back_s) {
 }
 
 }  // namespace
+
+double memory_rows(const std::vector<double>& values) {
+  double mean = 0.0;
+  std::ranges::for_each(values, [&](double value) { mean += value / double(values.size()); });
+  const auto product = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t row = lag; row < values.size(); ++row) {
+      sum += (values[row] - mean) * (values[row - lag] - mean);
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(values.size() - lag, 1));
+  };
+  const double half = 0.5 * product(0);
+  std::size_t lag = 1;
+  while (lag < values.size() && product(lag) > half) {
+    lag *= 2;
+  }
+  if (lag >= values.size() || half <= 0.0) {
+    return static_cast<double>(std::min(lag, values.size()));
+  }
+  const double before = product(lag / 2);
+  const auto first = static_cast<double>(lag / 2);
+  return first + (static_cast<double>(lag) - first) * (before - half) / (before - product(lag));
+}
 
 std::string time_order_problem(const Table& table, std::size_t column, double most_s,
                                std::size_t& line) {

@@ -26,6 +26,11 @@ RowClock row_clock(const Table& table, const Roles& given);
 std::vector<double> row_times_s(const Table& table, const std::string& time, double rate_hz,
                                 bool with_words = false);
 
+/// The rows after which a signal's autocorrelation has fallen to one half, between powers of two in
+/// a straight line; all rows where the signal never forgets so much, 1 of a constant. Cost O(rows),
+/// times the logarithm of the result.
+double memory_rows(const std::vector<double>& values);
+
 /// Sets the unit of the time's column where nobody gave one and its name (time_ms) or its size (ms
 /// since 1970, days) leaves no other. Returns a line for the user; "" where nothing was set.
 std::string settle_time_unit(Table& table, const Roles& given);

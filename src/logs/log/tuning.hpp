@@ -33,12 +33,16 @@ inline constexpr struct Tuning {
 
   /// Velocities that are not measured.
   struct Validity {
-    double rounding = 1e-4;       ///< of a mark, as a share: logs have four digits; by hand
-    double far = 3.0;             ///< of a mark from zero, in sizes of the farthest other; by hand
-    std::size_t least_marks = 3;  ///< of a value that nobody knows as a mark; by hand
-    double most_merit = 0.4;      ///< [m/s] of a figure of merit: Water Linked's DVL A50
-    double least_jump = 0.15;     ///< into and out of zeros, of the speeds' 90 % quantile; by hand
-    std::size_t least_zeros = 3;  ///< rows; by hand
+    double rounding = 1e-4;        ///< of a mark, as a share: logs have four digits; by hand
+    double far = 3.0;              ///< of a mark from zero, in sizes of the farthest other; by hand
+    std::size_t least_marks = 3;   ///< of a value that nobody knows as a mark; by hand
+    double most_merit = 0.4;       ///< [m/s] of a figure of merit: Water Linked's DVL A50
+    double least_jump = 0.15;      ///< into and out of zeros, of the speeds' 90 % quantile; by hand
+    std::size_t least_zeros = 3;   ///< rows; by hand
+    std::size_t frozen_rows = 20;  ///< on one number; as the diagnosis has it
+    std::size_t frozen_times = 4;  ///< times the longest usual repetition; likewise
+    std::size_t moving_rows = 5;   ///< of another velocity, up to each change; likewise
+    double usual_step = 0.9;       ///< quantile of changes from row to row; by hand
   } validity;
 
   /// Plausibility: in CSV logs of real and simulated vehicles ratios lie between 0.83 and 1.08
@@ -86,6 +90,26 @@ inline constexpr struct Tuning {
     double least_turn_deg = 15.0;
     double least_correlation = 0.8;  ///< of the yaw rate and the slope of yaw
   } pose_check;
+
+  /// The clock of the commands (command_clock_mistake()). By hand.
+  struct CommandClock {
+    double farthest_s = 30.0;
+    double longest_part = 1.0 / 6.0;  ///< of the log, in a shift
+    double near_s = 3.0;              ///< of thrusters, filters and feedback; no clock
+    std::array<double, 4> lags_s{3.0, 6.0, 12.0, 24.0};  ///< of thrusters, together
+    double step_s = 1.0;                                 ///< of the shifts
+    double finer = 5.0;                                  ///< times, of the shift that was found
+    double least_s = 180.0;                              ///< of the log
+    std::size_t most_blocks = 20'000;
+    double least_filled = 0.5;              ///< of the rows of a block
+    std::size_t rows_per_coefficient = 10;  ///< in each half of the log
+    double ridge = 1e-6;                    ///< of columns with unit variance
+    double least_left = 1e-3;               ///< of a target: less is as good
+    double least_gain = 0.2;                ///< logarithm; sound logs: up to 0.03
+    double certain_gain = 0.5;              ///< from here on refused
+    double agreement_s = 2.0;               ///< between the halves of the log
+    double most_aligned_s = 10.0;           ///< that --align takes: Alignment::kMostS
+  } command_clock;
 
   /// The window of a pose (find_pose_window()).
   struct PoseWindow {

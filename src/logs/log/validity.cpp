@@ -206,11 +206,117 @@ Rows zero_rows(const std::vector<std::span<const double>>& velocities, const Rol
   return rows;
 }
 
+namespace {
+
+// Rows of one number on end.
+struct Run {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+std::vector<Run> runs_of(std::span<const double> values) {
+  std::vector<Run> runs;
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (!runs.empty() && values[row] == values[row - 1]) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({row, 1});
+    }
+  }
+  return runs;
+}
+
+// The least length of a run that is no usual one of the signal; 0: all are usual.
+std::size_t least_freeze(const std::vector<Run>& runs) {
+  std::vector<std::size_t> lengths;
+  std::ranges::transform(runs, std::back_inserter(lengths), &Run::count);
+  std::ranges::sort(lengths);
+  for (std::size_t k = 1; k < lengths.size(); ++k) {
+    if (lengths[k] >= kValidity.frozen_rows &&
+        lengths[k] >= kValidity.frozen_times * lengths[k - 1]) {
+      return lengths[k];
+    }
+  }
+  return 0;
+}
+
+// The usual size of a change from row to row.
+double usual_step(std::span<const double> values) {
+  std::vector<double> steps;
+  for (std::size_t row = 1; row < values.size(); ++row) {
+    const double step = std::abs(values[row] - values[row - 1]);
+    if (step > 0.0) {
+      steps.push_back(step);
+    }
+  }
+  return steps.empty() ? 0.0 : quantile(steps, kValidity.usual_step);
+}
+
+bool changes_within(std::span<const double> values, const Run& run) {
+  std::size_t changes = 0;
+  for (std::size_t row = run.first + 1; row < run.first + run.count; ++row) {
+    changes += std::isfinite(values[row]) && values[row] != values[row - 1] ? 1 : 0;
+  }
+  return changes * kValidity.moving_rows >= run.count;
+}
+
+}  // namespace
+
+Rows frozen_rows(const std::vector<std::span<const double>>& velocities, std::size_t frozen,
+                 const Roles& given) {
+  if (is_none(given)) {
+    return {};
+  }
+  const std::span<const double> values = velocities[frozen];
+  const std::vector<Run> runs = runs_of(values);
+  const std::size_t least = least_freeze(runs);
+  const double step = least > 0 ? usual_step(values) : 0.0;
+  Rows rows;
+  for (const Run& run : runs) {
+    const std::size_t end = run.first + run.count;
+    const bool is_long = least > 0 && run.count >= least && values[run.first] != 0.0;
+    const bool jumps = end == values.size() || std::abs(values[end] - values[run.first]) > step;
+    const auto moves = [&](std::span<const double> other) {
+      return other.data() != values.data() && changes_within(other, run);
+    };
+    for (std::size_t row = run.first + 1;
+         is_long && jumps && std::ranges::any_of(velocities, moves) && row < end; ++row) {
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
 void drop_rows(const Rows& rows, std::vector<double>& values) {
   for (const std::size_t row : rows) {
     values[row] = kNone;
   }
 }
+
+namespace {
+
+// Without the frozen values of velocities and rates. Returns the lines about them.
+std::string drop_frozen(Table& table, const Roles& given) {
+  std::vector<std::size_t> columns;
+  std::vector<std::span<const double>> motion;
+  for (std::size_t column = 0; column < table.names.size(); ++column) {
+    if (velocity_by_name(table.names[column]) && !table.is_of_words(column)) {
+      columns.push_back(column);
+      motion.emplace_back(table.columns[column]);
+    }
+  }
+  std::string told;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (const Rows rows = frozen_rows(motion, k, given); !rows.empty()) {
+      told +=
+          drop(table, {columns[k]}, rows,
+               fmt::format("{}: frozen at {:g}", table.names[columns[k]], motion[k][rows.front()]));
+    }
+  }
+  return told;
+}
+
+}  // namespace
 
 std::string drop_missing(Table& table, const Roles& given) {
   for (const std::string& text : given.missing) {
@@ -248,7 +354,7 @@ std::string drop_missing(Table& table, const Roles& given) {
   });
   drop_if_any(velocities, zero_rows(all, given),
               names_of(table, velocities) + ": exact zeros between rows of a moving vehicle");
-  return told;
+  return told + drop_frozen(table, given);
 }
 
 }  // namespace kelpie::log

@@ -237,6 +237,20 @@ std::string again_text(const IdentifyArguments& options) {
          (engines.empty() ? "" : " --for " + shell_word(engines));
 }
 
+// Worse than the mean of the held-out rows on some axis: no vehicle for a simulator.
+std::string failure_of(const study::Identification& found) {
+  const std::vector<double>& r2 = found.held_out.r2;
+  const auto worst = std::ranges::min_element(r2);
+  if (found.held_out.times_s.empty() || worst == r2.end() || !(*worst < 0.0)) {
+    return "";
+  }
+  return fmt::format(
+      "no vehicle was identified: R² of {} is {:.3g} on held-out rows, and the mean "
+      "of these rows has 0; no files for simulators are written. Are the commands, "
+      "units and axes right? --accept implausible writes the files",
+      found.targets[static_cast<std::size_t>(worst - r2.begin())], *worst);
+}
+
 void run_identify(const IdentifyArguments& given) {
   given.answer.begin();
   IdentifyArguments options = given;
@@ -249,11 +263,18 @@ void run_identify(const IdentifyArguments& given) {
   inputs.push_back(options.six.vehicle);
   const file::OutFolder out = take_out_folder(options.out, all_files(), inputs);
   Identified result = identified(options, wish, base);
+  const std::string failure = options.accept.empty() ? failure_of(result.found) : "";
+  if (!failure.empty()) {
+    result.vehicle.reset();
+  }
   if (result.vehicle) {
     result.found.certificates = certificates_of(*result.vehicle, result.drive, wanted);
   }
   const file::FileSet files = files_of(result, wanted);
   file::write_files_whole(out.path(), files);
+  if (!failure.empty()) {
+    throw InputError({.file = result.found.source}, failure);
+  }
   Answer answer{
       .verdict = report::identification_verdict(result.found),
       .tables = report::identification_table(result.found),

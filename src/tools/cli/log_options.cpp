@@ -131,7 +131,9 @@ void check_clock(const log::Dataset& data, const PlanOptions& options) {
 
 std::string check_targets(const log::Dataset& data, const std::string& states,
                           const PlanOptions& options) {
-  return tell_mistakes(data.source, "targets", log::target_mistakes(data, states),
+  double align_s = 0.0;
+  parse_number(options.align, align_s);  // "auto" and "none" are 0 s
+  return tell_mistakes(data.source, "targets", log::target_mistakes(data, states, align_s),
                        !options.accept.empty());
 }
 

@@ -73,7 +73,8 @@ std::string quality(const study::StreamResult& result) {
 std::string opening(const study::StreamResult& result, const std::vector<NextStep>& next) {
   const std::string log = chart::file_names(result.source);
   const std::string news = headline(result);
-  const std::vector<std::string> warnings = warning_lines(result);
+  std::vector<std::string> warnings = warning_lines(result);
+  std::ranges::move(caveat_lines(result), std::back_inserter(warnings));
   const bool warns = !warnings.empty();  // names of columns keep their small letters
   std::string text = chart::paragraph("over", "Learned from " + log) +
                      chart::heading(1, warns ? as_sentence(news) : news + ".");

@@ -17,6 +17,8 @@ inline constexpr struct Tuning {
   double very_good_r2 = 0.9;         ///< words of a verdict
   double good_r2 = 0.7;
   double fair_r2 = 0.4;
+  double least_memories =
+      10.0;  ///< of the velocities in held-out stretches, for a word beyond fair
   std::size_t longest_log = 60;     ///< characters of a log's name in a verdict
   double told_horizon_s = 10.0;     ///< the longest horizon that a verdict tells in words
   std::ptrdiff_t rows_since = 500;  ///< after a change, that are worth learning alone

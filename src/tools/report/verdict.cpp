@@ -36,11 +36,11 @@ double at_least_mean(double r2) {
   return std::isfinite(r2) ? std::max(r2, 0.0) : 0.0;
 }
 
-std::string quality(double r2) {
-  if (r2 >= kTuning.very_good_r2) {
-    return "very good";
+std::string quality(double r2, bool caveat) {
+  if (r2 >= kTuning.good_r2 && !caveat) {
+    return r2 >= kTuning.very_good_r2 ? "very good" : "good";
   }
-  return r2 >= kTuning.good_r2 ? "good" : r2 >= kTuning.fair_r2 ? "fair" : "weak";
+  return r2 >= kTuning.fair_r2 ? "fair" : "weak";
 }
 
 using Since = std::optional<study::SinceChange>;
@@ -58,14 +58,14 @@ bool is_judged_by_before(const study::AxisResult& axis, const Since& since) {
 }
 
 // How good the predictions of an axis are, in words that follow "are".
-std::string quality_of(const study::AxisResult& axis, const Since& since) {
+std::string quality_of(const study::AxisResult& axis, const Since& since, bool caveat) {
   if (is_better_since(axis, since)) {
-    return fmt::format("{} since {} s (R² {})", quality(since->r2),
+    return fmt::format("{} since {} s (R² {})", quality(since->r2, caveat),
                        chart::time_text(since->since_s), chart::decimal(since->r2));
   }
   const double r2 = axis.r2_final;
   if (std::isfinite(r2) && is_judged_by_before(axis, since)) {
-    return fmt::format("{} on rows mostly of before {} s", quality_of(axis, std::nullopt),
+    return fmt::format("{} on rows mostly of before {} s", quality_of(axis, std::nullopt, caveat),
                        chart::time_text(since->since_s));
   }
   if (!std::isfinite(r2)) {
@@ -74,7 +74,7 @@ std::string quality_of(const study::AxisResult& axis, const Since& since) {
   if (r2 <= kTuning.clear_r2) {
     return r2 < -kTuning.clear_r2 ? "worse than the mean" : "no better than the mean";
   }
-  return quality(r2);
+  return quality(r2, caveat);
 }
 
 // Whether least squares is as good without the commands. Not where least squares fails with the
@@ -196,6 +196,7 @@ chart::TextTable quality_table(const study::StreamResult& result) {
                          .rows = {},
                          .left = {0, 4},
                          .whole = true};
+  const bool caveat = !caveat_lines(result).empty();
   bool tells_since = false;
   for (const study::AxisResult& axis : result.axes) {
     const study::Baselines& beside = axis.baselines;
@@ -204,7 +205,7 @@ chart::TextTable quality_table(const study::StreamResult& result) {
     table.rows.push_back({report::name_of(axis), chart::decimal(axis.r2_final),
                           chart::decimal(beside.least_squares.r2_final),
                           chart::decimal(beside.without_commands.r2_final),
-                          verdict_of(axis, since)});
+                          verdict_of(axis, since, caveat)});
   }
   if (tells_since) {
     table.notes.emplace_back(
@@ -252,6 +253,33 @@ std::vector<std::string> warning_lines(const study::StreamResult& result) {
   return lines;
 }
 
+std::vector<std::string> caveat_lines(const study::StreamResult& result) {
+  std::vector<std::string> lines;
+  const auto measured = [](const study::AxisResult& axis) { return std::isfinite(axis.r2_final); };
+  if (std::ranges::none_of(result.axes, measured)) {
+    return lines;
+  }
+  const Attitude attitude = find_attitude(result.input_names);
+  std::size_t motion = 0;
+  for (std::size_t i = 0; i < result.input_names.size(); ++i) {
+    motion += velocity_axis(result.input_names[i]) || attitude.contains(i) ? 1 : 0;
+  }
+  if (result.commands.empty() && motion == result.input_names.size()) {
+    lines.emplace_back(
+        "no commands are among the inputs: this model cannot tell what thrusters do");
+  }
+  for (const std::string& answer : result.answers) {
+    lines.push_back("the answer is among the inputs: " + answer);
+  }
+  if (result.judging_memories < kTuning.least_memories) {
+    lines.push_back(fmt::format(
+        "R² says little of other drives: velocities keep {:.2g} s in memory, and the held-out "
+        "stretches have {:.0f} times as much in all, where {:.0f} tell",
+        result.memory_s, result.judging_memories, kTuning.least_memories));
+  }
+  return lines;
+}
+
 bool is_poor(const study::StreamResult& result) {
   return !warning_lines(result).empty() ||
          std::ranges::all_of(result.axes, [&](const study::AxisResult& axis) {
@@ -261,8 +289,8 @@ bool is_poor(const study::StreamResult& result) {
 }
 
 std::string verdict_of(const study::AxisResult& axis,
-                       const std::optional<study::SinceChange>& since) {
-  std::string quality = quality_of(axis, since);
+                       const std::optional<study::SinceChange>& since, bool caveat) {
+  std::string quality = quality_of(axis, since, caveat);
   if (!(axis.r2_final > kTuning.clear_r2) || is_better_since(axis, since)) {
     return quality;
   }
@@ -277,8 +305,9 @@ std::string verdict_of(const study::AxisResult& axis,
 std::string quality_sentence(const study::StreamResult& result) {
   std::vector<std::string> words;
   std::vector<std::vector<std::string>> axes;
+  const bool caveat = !caveat_lines(result).empty();
   for (const study::AxisResult& axis : result.axes) {
-    const std::string quality = quality_of(axis, study::since_change(result, axis));
+    const std::string quality = quality_of(axis, study::since_change(result, axis), caveat);
     const auto found = std::ranges::find(words, quality);
     const auto place = static_cast<std::size_t>(found - words.begin());
     if (found == words.end()) {
@@ -298,6 +327,9 @@ std::string quality_sentence(const study::StreamResult& result) {
 std::string headline(const study::StreamResult& result) {
   if (const std::vector<std::string> warnings = warning_lines(result); !warnings.empty()) {
     return warnings.front();
+  }
+  if (const std::vector<std::string> caveats = caveat_lines(result); !caveats.empty()) {
+    return caveats.front();
   }
   const std::vector<Finding>& findings = result.diagnosis.findings;
   const auto named = std::find_if(findings.rbegin(), findings.rend(), [](const Finding& finding) {
@@ -320,8 +352,10 @@ std::string verdict_text(const study::StreamResult& result) {
   for (const std::string& change : vehicle_lines(result)) {
     text += line("vehicle: " + change);
   }
-  for (const std::string& warning : warning_lines(result)) {
-    text += line("WARNING: " + warning);
+  for (const auto& warnings : {warning_lines(result), caveat_lines(result)}) {
+    for (const std::string& warning : warnings) {
+      text += line("WARNING: " + warning);
+    }
   }
   return text;
 }

@@ -29,21 +29,27 @@ std::vector<std::string> vehicle_lines(const study::StreamResult& result);
 /// Reasons against any trust in the model: nothing learned, commands without effect.
 std::vector<std::string> warning_lines(const study::StreamResult& result);
 
+/// Reasons why no R² of this result earns a word beyond "fair": held-out stretches that are shorter
+/// than the memory of the velocities, or few; no commands among the inputs; the answer among these.
+std::vector<std::string> caveat_lines(const study::StreamResult& result);
+
 /// Whether the model is of no use: a warning, or no axis predicted better than by the mean.
 bool is_poor(const study::StreamResult& result);
 
 /// How good an axis is, in words: "very good", "least squares is better by 0.06", "no better than
 /// the mean", "the commands say nothing to least squares"; where the vehicle changed and the rows
-/// `since` then are predicted clearly better than all, "good since 800 s (R² 0.892)".
+/// `since` then are predicted clearly better than all, "good since 800 s (R² 0.892)". With a
+/// `caveat` at most "fair".
 std::string verdict_of(const study::AxisResult& axis,
-                       const std::optional<study::SinceChange>& since = std::nullopt);
+                       const std::optional<study::SinceChange>& since = std::nullopt,
+                       bool caveat = false);
 
 /// The axes by how good they are: "Predictions of udot and rdot are very good, of vdot good".
 std::string quality_sentence(const study::StreamResult& result);
 
 /// The most important news of the result in one sentence without a full stop: a reason against any
-/// trust; else the last named cause of a change, "th2 gives 60 % of its thrust (…) since 1500 s";
-/// else quality_sentence().
+/// trust, or a caveat; else the last named cause of a change, "th2 gives 60 % of its thrust (…)
+/// since 1500 s"; else quality_sentence().
 std::string headline(const study::StreamResult& result);
 
 /// R² of each axis on held-out rows beside simple predictors, and verdict_of().

@@ -176,16 +176,22 @@ std::string identification_verdict(const study::Identification& found) {
   const auto told = std::ranges::count_if(found.fit().parameters, [](const FittedParameter& one) {
     return one.state != ParameterState::not_told;
   });
-  std::string text = fmt::format("Identified {} of {} parameters from {} rows of {}\n", told,
-                                 found.fit().parameters.size(), chart::grouped(found.training_rows),
-                                 short_name(found.source));
-  if (!found.held_out.times_s.empty()) {
-    std::vector<std::string> r2;
+  std::string text;
+  if (const std::vector<double>& r2 = found.held_out.r2; !found.held_out.times_s.empty()) {
+    const auto worst = static_cast<std::size_t>(std::ranges::min_element(r2) - r2.begin());
+    std::vector<std::string> others;
     for (std::size_t axis = 0; axis < found.targets.size(); ++axis) {
-      r2.push_back(found.targets[axis] + " " + chart::decimal(found.held_out.r2[axis]));
+      if (axis != worst) {
+        others.push_back(found.targets[axis] + " " + chart::decimal(r2[axis]));
+      }
     }
-    text += paragraph("R² of the identified vehicle on held-out rows: " + join_text(r2, ", "));
+    text = paragraph(
+        fmt::format("R² of the identified vehicle on held-out rows: {} {} at worst, {}",
+                    found.targets[worst], chart::decimal(r2[worst]), join_text(others, ", ")));
   }
+  text += fmt::format("Identified {} of {} parameters from {} rows of {}\n", told,
+                      found.fit().parameters.size(), chart::grouped(found.training_rows),
+                      short_name(found.source));
   for (const std::string& remark : identification_remarks(found)) {
     text += paragraph(remark);
   }

@@ -25,7 +25,7 @@ std::string tune_verdict(const study::TuneResult& result);
 /// Errors of the velocities by horizon, and whether the model beats a held velocity.
 std::string rollout_verdict(const study::OpenLoopResult& result);
 
-/// How many parameters the log tells, R² of the identified vehicle, and the remarks.
+/// R² of the identified vehicle, the worst axis first; how many parameters the log tells; remarks.
 std::string identification_verdict(const study::Identification& found);
 
 /// What became of which vehicle, then how the learners did.

@@ -124,7 +124,11 @@ struct StreamResult {
   std::uint64_t seed = 0;
   std::size_t training_rows = 0;
   std::size_t held_out_rows = 0;
-  std::size_t samples_shown = 0;  ///< < training_rows after an interruption
+  double memory_s = 0.0;  ///< in which the quickest velocity forgets half of itself; 0: unknown
+  /// Held-out stretches in whole memories: how much of the motion training rows do not tell.
+  double judging_memories = std::numeric_limits<double>::infinity();
+  std::vector<std::string> answers{};  ///< inputs that copy a velocity or target, in words
+  std::size_t samples_shown = 0;       ///< < training_rows after an interruption
   bool interrupted = false;
   std::size_t memory_bytes = 0;                               ///< of all learners; 0: unknown
   std::vector<std::pair<std::string, std::string>> settings;  ///< name and value, in table order

@@ -25,6 +25,12 @@ log::Roles guess(const std::string& names, const log::Roles& given = {}) {
   return log::guess_roles(with_columns(names), given);
 }
 
+TEST(Roles, ALetterBesideTheDottedAccelerationIsARudder) {
+  const log::Roles roles = guess("t,u,v,r,dr,ds,n,udot,vdot,rdot");
+  EXPECT_EQ(roles.targets, (Names{"udot", "vdot", "rdot"}));
+  EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "dr", "ds", "n"}));
+}
+
 TEST(Roles, GuessesThePartsOfARealLog) {
   const log::Roles roles = guess("u,v,r,th1,th2,th3,udot,vdot,rdot");
   EXPECT_EQ(roles.inputs, (Names{"u", "v", "r", "th1", "th2", "th3"}));

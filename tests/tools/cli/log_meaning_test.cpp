@@ -453,6 +453,195 @@ TEST_F(LogMeaning, VelocitiesBesidePoses) {
   });
 }
 
+// Commands that come so much later than they were given, six minutes of them.
+TEST_F(LogMeaning, CommandsOfAnotherClock) {
+  const std::vector<Row> rows = drive(0.2, 1800);
+  const auto log = [&](double late_s) {
+    const auto late = [&rows, late_s](double Row::*of) {
+      return [&rows, of, late_s](const Row& row) {
+        const int from = row.k - static_cast<int>(std::lround(late_s / 0.2));
+        return fmt::format("{:.6f}", rows[static_cast<std::size_t>(std::clamp(from, 0, 1799))].*of);
+      };
+    };
+    return log_of({{"t", number(&Row::t)},
+                   {"u", number(&Row::u)},
+                   {"v", number(&Row::v)},
+                   {"r", number(&Row::r)},
+                   {"n1", late(&Row::n1)},
+                   {"n2", late(&Row::n2)}},
+                  ",", 0.2, 1800);
+  };
+  expect({{log(0.0), "", 0, "(5 min at 5 Hz)"},
+          {log(1.6), "", 0, "(5 min at 5 Hz)"},
+          {log(10.0), "", 2, "the commands come 10 s late"},
+          {log(10.0), "", 2, "the two have different clocks; --align 10 takes them so"},
+          {log(-8.0), "", 2, "the commands come 8 s early"},
+          {log(20.0), "", 2, "or their messages by lag = 19.8 in [log]"}});
+  write("log.csv", log(10.0));
+  testing::succeeded(run("learn log.csv --align 10 --set preset=paper --set buffer=50 --out out"));
+  EXPECT_NE(testing::succeeded(run("inspect log.csv")).out.find("the commands come 10 s late"),
+            std::string::npos);
+}
+
+// Accelerations, so that every other column may be an input.
+TEST_F(LogMeaning, SecondSetsForTheSameThrusters) {
+  const std::vector<Row> rows = drive(0.2, 600);
+  const Cell udot = [&rows](const Row& row) {
+    const auto k = static_cast<std::size_t>(std::clamp(row.k, 1, 598));
+    return fmt::format("{:.6f}", (rows[k + 1].u - rows[k - 1].u) / 0.4);
+  };
+  const auto with = [&](const std::vector<std::pair<std::string, Cell>>& commands) {
+    Columns columns{{"t", number(&Row::t)}, {"u", number(&Row::u)}, {"udot", udot}};
+    columns.insert(columns.end(), commands.begin(), commands.end());
+    return log_of(columns);
+  };
+  const auto of = [](double Row::*n, auto function) {
+    return [=](const Row& row) { return fmt::format("{:.6f}", function(row.*n, 0.3 * row.t)); };
+  };
+  const auto azimuth = [](double, double t) { return std::sin(t); };
+  const auto along = [](double n, double t) { return n * std::abs(n) * std::cos(std::sin(t)); };
+  const auto across = [](double n, double t) { return n * std::abs(n) * std::sin(std::sin(t)); };
+  const auto pulse = [](double n, double) { return 1500.0 + 400.0 * n; };
+  const auto wish = [](double n, double t) { return n + std::sin(7.0 * t); };
+  const Columns speeds{{"rpm1", number(&Row::n1)}, {"rpm2", number(&Row::n2)}};
+  Columns azimuths = speeds;
+  azimuths.insert(azimuths.end(),
+                  {{"az1", of(&Row::n1, azimuth)},
+                   {"az2", of(&Row::n2, [](double, double t) { return std::cos(t); })},
+                   {"fx1", of(&Row::n1, along)},
+                   {"fx2", of(&Row::n2, along)},
+                   {"fy1", of(&Row::n1, across)},
+                   {"fy2", of(&Row::n2, across)}});
+  Columns twice = speeds;
+  twice.insert(twice.end(), {{"motor_pwm1", of(&Row::n1, pulse)},
+                             {"motor_pwm2", of(&Row::n2, pulse)},
+                             {"thr_ref1", of(&Row::n1, wish)},
+                             {"thr_ref2", of(&Row::n2, wish)},
+                             {"servo1", of(&Row::n2, azimuth)},
+                             {"servo2", of(&Row::n1, across)}});
+  expect({{with(azimuths), "", 0, "commands: fx1, fx2, fy1, fy2\n"},
+          {with(azimuths), "", 0, "az2: is left out of the inputs: a second set for the thrusters"},
+          {with(twice), "", 0, "commands: rpm1, rpm2, servo1, servo2\n"},
+          {with(twice), "", 0, "motor_pwm1: is left out of the inputs: a second set for the"}});
+}
+
+TEST_F(LogMeaning, FrozenVelocities) {
+  const std::vector<Row> rows = drive(0.2, 600);
+  const auto frozen = [&rows](double Row::*of, int first, int last) {
+    return [&rows, of, first, last](const Row& row) {
+      const int k = row.k >= first && row.k < last ? first : row.k;
+      return fmt::format("{:.6f}", rows[static_cast<std::size_t>(k)].*of);
+    };
+  };
+  const auto log = [&](const Cell& u, const Cell& r) {
+    return log_of({{"t", number(&Row::t)},
+                   {"u", u},
+                   {"v", number(&Row::v)},
+                   {"r", r},
+                   {"n1", number(&Row::n1)},
+                   {"n2", number(&Row::n2)}});
+  };
+  const std::string of_surge = log(frozen(&Row::u, 200, 260), number(&Row::r));
+  expect({{of_surge, "", 0, " in 59 rows, the first on line 203: u is not measured there"},
+          {of_surge, "--missing none", 0, "R²"},
+          {log(number(&Row::u), frozen(&Row::r, 400, 600)), "", 0, "r: frozen at"}});
+  write("log.csv", log(number(&Row::u), number(&Row::r)));
+  const Outcome sound = testing::succeeded(run("inspect log.csv"));
+  EXPECT_EQ((sound.out + sound.err).find("frozen"), std::string::npos);
+}
+
+TEST_F(LogMeaning, GravityInAnAcceleration) {
+  const std::vector<Row> rows = drive(0.2, 600);
+  const auto log = [&](double gravity) {
+    const Cell udot = [&rows, gravity](const Row& row) {
+      const auto k = static_cast<std::size_t>(std::clamp(row.k, 1, 598));
+      return fmt::format("{:.6f}", (rows[k + 1].u - rows[k - 1].u) / 0.4 +
+                                       gravity * std::sin(0.1 * std::sin(0.8 * row.t)));
+    };
+    return log_of(
+        {{"t", number(&Row::t)},
+         {"u", number(&Row::u)},
+         {"n1", number(&Row::n1)},
+         {"n2", number(&Row::n2)},
+         {"theta",
+          [](const Row& row) { return fmt::format("{:.6f}", 0.1 * std::sin(0.8 * row.t)); }},
+         {"udot", udot}});
+  };
+  expect({{log(0.0), "", 0, kTwoMinutes},
+          {log(9.81), "", 2, "times the sine of theta: a specific force with gravity"},
+          {log(9.81), "--ignore udot", 0, kTwoMinutes}});
+}
+
+TEST_F(LogMeaning, ShortLogsOfPoses) {
+  const auto log = [](double step_s, int rows) {
+    return log_of({{"t", number(&Row::t)},
+                   {"x", number(&Row::x)},
+                   {"y", number(&Row::y)},
+                   {"psi", number(&Row::psi)},
+                   {"n1", number(&Row::n1)},
+                   {"n2", number(&Row::n2)}},
+                  ",", step_s, rows);
+  };
+  write("log.csv", log(0.02, 1500));
+  testing::succeeded(run("inspect log.csv --template fast.toml"));
+  EXPECT_NE(content("fast.toml").find("\nrate = 10 "), std::string::npos);
+  write("log.csv", log(4.0, 150));
+  testing::expect_refused(run("learn log.csv --out out"),
+                          "poses come every 4 s, which takes a window of 28 s at least");
+}
+
+// A word beyond "fair" is earned.
+TEST_F(LogMeaning, WordsOfTheVerdict) {
+  Columns timed{{"t", number(&Row::t)}};
+  timed.insert(timed.end(), kBoat.begin(), kBoat.end());
+  const auto percent = [](double Row::*of) {
+    return [of](const Row& row) { return fmt::format("{:.0f}%", 100.0 * row.*of); };
+  };
+  const std::vector<Row> rows = drive(0.2, 600);
+  const Cell slope = [&rows](const Row& row) {
+    const auto k = static_cast<std::size_t>(std::clamp(row.k, 1, 598));
+    return fmt::format("{:.6f}", (rows[k + 1].u - rows[k - 1].u) / 0.4);
+  };
+  const std::string answer = boat("t", number(&Row::t), {{"udot", slope}, {"true_udot", slope}});
+  write("log.csv", log_of(timed));
+  const Outcome sound = testing::succeeded(run("learn log.csv --out out"));
+  EXPECT_NE(sound.out.find("good"), std::string::npos) << sound.out;
+  EXPECT_EQ(sound.out.find("WARNING"), std::string::npos) << sound.out;
+  expect({{log_of(timed, ",", 0.2, 130), "--set warmup=50", 0, "R² says little of other drives"},
+          {log_of(timed), "--split random", 0, "R² says little of other drives"},
+          {log_of({{"t", number(&Row::t)},
+                   {"u", number(&Row::u)},
+                   {"udot", slope},
+                   {"n1", percent(&Row::n1)}}),
+           "", 0, "no commands are among the inputs"},
+          {answer, "--inputs u,v,r,n1,n2,true_udot", 0,
+           "the answer is among the inputs: true_udot goes with udot"}});
+  EXPECT_EQ(content("out/report.html").find("good"), std::string::npos);
+}
+
+// A yaw rate with another sign turns sway's coupling round.
+TEST_F(LogMeaning, NoVehicleIsIdentifiedBelowTheMean) {
+  const auto log = [](double sign) {
+    return log_of({{"t", number(&Row::t)},
+                   {"u", number(&Row::u)},
+                   {"v", number(&Row::v)},
+                   {"r", number(&Row::r, sign)},
+                   {"n1", number(&Row::n1)},
+                   {"n2", number(&Row::n2)}},
+                  ",", 0.2, 3000);
+  };
+  write("log.csv", log(1.0));
+  const Outcome sound = testing::succeeded(run("identify log.csv --mass 50 --out out"));
+  EXPECT_NE(sound.out.find("R² of the identified vehicle on held-out rows: "), std::string::npos);
+  EXPECT_NE(sound.out.find(" at worst, "), std::string::npos);
+  EXPECT_TRUE(exists("out/gazebo.sdf"));
+  write("log.csv", log(-1.0));
+  testing::expect_refused(run("identify log.csv --mass 50 --out out"),
+                          "no vehicle was identified: R² of vdot is -");
+  EXPECT_FALSE(exists("out/gazebo.sdf"));
+  testing::succeeded(run("identify log.csv --mass 50 --out out --accept implausible"));
+}
+
 // The boat as a recording: a message of `type` on `topic`, the thrusters, and `others`.
 using Fill = std::function<void(bag::MessageBuilder&, const Row&)>;
 
@@ -517,8 +706,14 @@ TEST_F(LogMeaning, Recordings) {
     message.set("twist.twist.linear.x", std::cos(row.psi) * row.u - std::sin(row.psi) * row.v);
     message.set("twist.twist.linear.y", std::sin(row.psi) * row.u + std::cos(row.psi) * row.v);
   };
+  const Fill frozen = [&](bag::MessageBuilder& message, const Row& row) {
+    twist_or(0.0)(message, {.u = row.u, .v = row.v, .r = row.r});
+    message.set("twist.linear.x", row.k > 200 && row.k < 260 ? -0.9 : row.u);
+  };
   const std::string commands = "commands: left, right\n";
   expect({
+      {recording("/vel", "geometry_msgs/msg/TwistStamped", frozen), "", 0,
+       "58 of 600 messages are no measurement of u"},
       {recording("/dvl/data", "dvl_msgs/msg/DVL", dvl), "", 0,
        "120 of 600 messages are no measurement of u"},
       {recording("/vel", "geometry_msgs/msg/TwistStamped", twist_or(0.0)), "", 0,
