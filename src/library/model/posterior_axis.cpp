@@ -103,7 +103,8 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
     assign_members();
     decision.published = true;
   }
-  decision.verdict = screen_.last_waits() ? Verdict::held_back : Verdict::accepted;
+  const bool is_explained = screen_.on_probation() != nullptr;
+  decision.verdict = screen_.last_waits() && !is_explained ? Verdict::held_back : Verdict::accepted;
   tally_.implausible += screen_.dropped();
   return decision;
 }

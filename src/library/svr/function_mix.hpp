@@ -71,7 +71,8 @@ struct FunctionMix {
   /// The weight of a physics term of the vehicle known.
   double nominal_weight(std::size_t k) const { return nominal.empty() ? 0.0 : nominal[k]; }
 
-  /// The weight of a physics term inside limits and range: Σ share_k w_k, and of the vehicle known.
+  /// The weight of a physics term inside limits and range, with the vehicle known: of the member
+  /// `posterior` where there is one, else Σ share_k w_k.
   double term_weight(std::size_t k) const;
 };
 
