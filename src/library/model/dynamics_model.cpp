@@ -129,10 +129,6 @@ bool is_refused(const Decision& decision) {
   return decision.verdict == Verdict::invalid || decision.verdict == Verdict::implausible;
 }
 
-bool is_waiting(const Decision& decision) {
-  return decision.verdict == Verdict::held_back;
-}
-
 bool is_settled(const Decision& decision) {
   return decision.had_model;
 }
@@ -322,8 +318,7 @@ void DynamicsModel::Parts::apply_change(ChangeMonitor::Event event) {
 
 void DynamicsModel::Parts::update_diagnosis(std::span<const double> x, std::span<const double> y,
                                             double t) {
-  // Rows that an axis holds back may be garbage on all axes.
-  if (!diagnosis || !trusts_sample() || std::ranges::any_of(state.decisions, is_waiting)) {
+  if (!diagnosis || !trusts_sample()) {
     return;
   }
   diagnosis->update(x, y, t);

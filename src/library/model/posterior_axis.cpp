@@ -103,8 +103,7 @@ Decision PosteriorAxis::update(std::span<const double> x, double y, double t) {
     assign_members();
     decision.published = true;
   }
-  const bool is_explained = screen_.on_probation() != nullptr;
-  decision.verdict = screen_.last_waits() && !is_explained ? Verdict::held_back : Verdict::accepted;
+  decision.verdict = screen_.last_waits() ? Verdict::held_back : Verdict::accepted;
   tally_.implausible += screen_.dropped();
   return decision;
 }
