@@ -64,7 +64,7 @@ inline constexpr struct PosteriorTuning {
   double least_error = 0.02;     ///< square of an error, in variances of the noise; by hand
   double most_correlated = 0.2;  ///< τ of a young posterior, per row; by hand
   double kept = 50.0;  ///< independent samples of before a change; from 50, 150, 1,000 on ../data
-  double samples_per_term = 10.0;  ///< independent, of a past vehicle: a rule of thumb; by hand
+  double samples_per_term = 10.0;     ///< independent, of a past vehicle: a rule of thumb; by hand
   std::size_t places_told = 1000;     ///< of a trained model; from 300 to 3,000 on a plant
   double deviations_per_width = 0.5;  ///< of errors, per half an interval of 90 %; by hand
   double unknown_spread = 0.3;        ///< of errors, per deviation of the target; by hand
