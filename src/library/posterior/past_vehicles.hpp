@@ -66,7 +66,7 @@ class PastVehicles {
   void alert() { alerted_s_ = last_s_; }
 
   /// The vehicle in service since `since_s` [s] is another than the live posterior's, which is kept
-  /// where 50 independent samples or more are known. `group`: of each feature.
+  /// where it served for ten independent samples per term or more. `group`: of each feature.
   void leave(const Posterior& live, double since_s, std::span<const std::uint8_t> group);
   void come_back();  ///< The vehicle of the last leave() was never left.
   void begin();      ///< Nothing is known of the vehicle in service.
