@@ -65,20 +65,12 @@ void SampleSums::tell_anew(std::span<const double> step) {
   square += moved + dot(step, first);
 }
 
-TargetScaling SampleSums::targets(std::span<const double> known) const {
+TargetScaling SampleSums::targets() const {
   if (weight == 0.0) {
     return {};
   }
-  double sum = moment[0];
-  double squares = square;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    const std::span<const double> row = gram.row(i);
-    sum += known[i] * row[0];
-    squares +=
-        known[i] * (2.0 * moment[i] + 2.0 * dot(row.first(i), known.first(i)) + known[i] * row[i]);
-  }
-  const double mean = sum / weight;
-  const double variance = squares / weight - mean * mean;
+  const double mean = moment[0] / weight;
+  const double variance = square / weight - mean * mean;
   return {origin + mean, std::sqrt(std::max(variance, std::numeric_limits<double>::min()))};
 }
 

@@ -36,9 +36,8 @@ struct SampleSums {
   /// Each target grows by stepᵀφ, with a step of the first features. Cost O(m²).
   void tell_anew(std::span<const double> step);
 
-  /// Mean and standard deviation of the targets, plus `known` · φ of the first features; 0 and 1
-  /// without samples. Cost O(known.size()²).
-  TargetScaling targets(std::span<const double> known = {}) const;
+  /// Mean and standard deviation of the targets; 0 and 1 without samples.
+  TargetScaling targets() const;
   double root_mean_square(std::size_t feature) const;
 
   void visit(Archive& archive);  ///< core/archive.hpp
