@@ -53,14 +53,8 @@ void SeenRange::visit(Archive& archive) {
   archive.whole(count_);
 }
 
-SeenTermRanges::SeenTermRanges(std::size_t terms) {
-  resize(terms);
-}
-
-void SeenTermRanges::resize(std::size_t terms) {
-  seen_.resize(terms, SeenRange(kOnline.range.term_margin));
-  ranges_.resize(terms);
-}
+SeenTermRanges::SeenTermRanges(std::size_t terms)
+    : seen_(terms, SeenRange(kOnline.range.term_margin)), ranges_(terms) {}
 
 void SeenTermRanges::measure() {
   std::ranges::transform(seen_, ranges_.begin(), &SeenRange::range);
@@ -84,10 +78,7 @@ void SeenTermRanges::rescale(std::span<const double> factors) {
 void SeenTermRanges::visit(Archive& archive) {
   std::size_t terms = seen_.size();
   archive.whole(terms);
-  archive.require(terms == 0 || terms == seen_.size(), "limits of other terms");
-  if (archive.loading()) {
-    resize(terms);
-  }
+  archive.require(terms == seen_.size(), "limits of other terms");
   for (SeenRange& seen : seen_) {
     archive.part("seen term", seen);
   }

@@ -40,13 +40,12 @@ class SeenRange {
   std::size_t count_ = 0;
 };
 
-/// The ranges of the seen values of all physics terms of a sample, or of none where terms have no
-/// limits. Adding allocates nothing.
+/// The ranges of the seen values of all physics terms of a sample. Adding allocates nothing.
 class SeenTermRanges {
  public:
-  explicit SeenTermRanges(std::size_t terms = 0);
+  explicit SeenTermRanges(std::size_t terms);
 
-  /// The ranges, in the order of the terms; empty: no limits. Valid until the next other call.
+  /// The ranges, in the order of the terms. Valid until the next other call.
   const std::vector<ValueRange>& ranges() const { return ranges_; }
 
   /// Adds the terms of a sample `z`, the last numbers of z. Requires no NaN.
@@ -63,7 +62,6 @@ class SeenTermRanges {
   }
 
  private:
-  void resize(std::size_t terms);
   void measure();
 
   std::vector<SeenRange> seen_;

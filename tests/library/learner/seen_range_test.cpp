@@ -62,7 +62,7 @@ TEST(SeenTermRanges, FollowTheTermsOfSamplesAndTheirScale) {
   seen.rescale(std::array{10.0, 1.0});
   EXPECT_NEAR(seen.ranges()[0].low, 10.0 * before[0].low, 1e-12);
   EXPECT_NEAR(seen.ranges()[1].high, before[1].high, 1e-12);
-  SeenTermRanges none;
+  SeenTermRanges none(0);
   none.add(std::array{1e6, 1.0, 2.0});
   EXPECT_TRUE(none.ranges().empty());
 }
